@@ -1,0 +1,120 @@
+// The common subset of C++ and GLSL in which every rule header is written (DESIGN.md, invariant 4).
+//
+// 32-bit ints only; products that need more go through the wide helpers below. No negative operand to `/` or `%`
+// (floorDiv is for that), no shift of 32 or more, no overflow of a signed int: each rule states its ranges.
+// In C++ the rules live in spoor::rules; `static` keeps a copy per translation unit, because one of them may be
+// compiled for a newer processor than the rest and the linker would otherwise be free to pick that copy for all.
+#ifndef SPOOR_RULES_LANGUAGE_H
+#define SPOOR_RULES_LANGUAGE_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#define RULE static inline
+#define RULE_CONST static constexpr int
+#define RULE_OUT(type) type&
+#define SPOOR_RULES_BEGIN namespace spoor::rules {
+#define SPOOR_RULES_END }
+#else
+#define RULE
+#define RULE_CONST const int
+#define RULE_OUT(type) out type
+#define SPOOR_RULES_BEGIN
+#define SPOOR_RULES_END
+#endif
+
+SPOOR_RULES_BEGIN
+
+#ifdef __cplusplus
+
+using uint = std::uint32_t;
+/// A signed 64-bit value. Only the wide* helpers touch it.
+using wide = std::int64_t;
+
+RULE wide wideFrom(int a) { return a; }
+RULE wide wideMul(int a, int b) { return wide(a) * b; }
+RULE wide wideAdd(wide a, wide b) { return a + b; }
+RULE wide wideSub(wide a, wide b) { return a - b; }
+RULE bool wideNegative(wide a) { return a < 0; }
+RULE bool wideZero(wide a) { return a == 0; }
+RULE int wideLow(wide a) { return int(a); }
+/// a * b where the product fits 64 bits.
+RULE wide wideTimes(wide a, int b) { return a * b; }
+/// floor(a / b); b > 0.
+RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+RULE int minInt(int a, int b) { return a < b ? a : b; }
+RULE int maxInt(int a, int b) { return a > b ? a : b; }
+
+#else
+
+// A signed 64-bit value, two's complement. Only the wide* helpers touch it.
+struct wide { uint low; uint high; };
+
+wide wideFrom(int a) { return wide(uint(a), a < 0 ? 0xffffffffu : 0u); }
+wide wideMul(int a, int b) {
+  int high;
+  int low;
+  imulExtended(a, b, high, low);
+  return wide(uint(low), uint(high));
+}
+wide wideAdd(wide a, wide b) {
+  uint carry;
+  uint low = uaddCarry(a.low, b.low, carry);
+  return wide(low, a.high + b.high + carry);
+}
+wide wideSub(wide a, wide b) {
+  uint borrow;
+  uint low = usubBorrow(a.low, b.low, borrow);
+  return wide(low, a.high - b.high - borrow);
+}
+bool wideNegative(wide a) { return (a.high & 0x80000000u) != 0u; }
+bool wideZero(wide a) { return (a.low | a.high) == 0u; }
+int wideLow(wide a) { return int(a.low); }
+wide wideTimes(wide a, int b) {
+  uint high;
+  uint low;
+  umulExtended(a.low, uint(b), high, low);
+  high += a.high * uint(b);
+  if (b < 0) high -= a.low;
+  return wide(low, high);
+}
+wide wideFloorDiv(wide a, wide b) {
+  bool negative = wideNegative(a);
+  wide zero = wide(0u, 0u);
+  wide rest = negative ? wideSub(zero, a) : a;
+  wide quotient = zero;
+  wide part = zero;
+  for (int bit = 63; bit >= 0; --bit) {
+    part.high = (part.high << 1) | (part.low >> 31);
+    uint next = bit >= 32 ? (rest.high >> uint(bit - 32)) : (rest.low >> uint(bit));
+    part.low = (part.low << 1) | (next & 1u);
+    wide less = wideSub(part, b);
+    if (!wideNegative(less)) {
+      part = less;
+      if (bit >= 32) quotient.high |= 1u << uint(bit - 32);
+      else quotient.low |= 1u << uint(bit);
+    }
+  }
+  if (!negative) return quotient;
+  wide result = wideSub(zero, quotient);
+  return wideZero(part) ? result : wideSub(result, wide(1u, 0u));
+}
+
+int minInt(int a, int b) { return min(a, b); }
+int maxInt(int a, int b) { return max(a, b); }
+
+#endif
+
+/// a, or the nearer of the bounds where it lies outside them.
+RULE int wideClamp(wide a, int low, int high) {
+  if (wideNegative(wideSub(a, wideFrom(low)))) return low;
+  return wideNegative(wideSub(wideFrom(high), a)) ? high : wideLow(a);
+}
+
+/// floor(a / b) for b > 0. Range: a > -2^31.
+RULE int floorDiv(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+RULE int clampInt(int a, int low, int high) { return minInt(maxInt(a, low), high); }
+
+SPOOR_RULES_END
+
+#endif

@@ -1,0 +1,28 @@
+// Stage nearest: the exact nearest free cell in Euclidean distance, with one total order for ties.
+// Order: smaller squared distance, then smaller y, then smaller x of the free cell. The column pass keeps, per cell, the
+// nearest free cell of its own column (tie: smaller y); the row pass picks the best column. Both use this order, so the
+// two passes find the same cell as a search over all cells (checked against that search in the tests).
+// Source: Meijster et al. 2000 (lower envelope of a row); ties are ours.
+#ifndef SPOOR_RULES_NEAREST_H
+#define SPOOR_RULES_NEAREST_H
+#include "limits.h"
+
+SPOOR_RULES_BEGIN
+
+/// Is free cell (ax, ay) before (bx, by) in the order, seen from x in row y? Range: spans up to 16384 cells.
+RULE bool nearestBefore(int x, int y, int ax, int ay, int bx, int by) {
+  int da = (x - ax) * (x - ax) + (y - ay) * (y - ay);
+  int db = (x - bx) * (x - bx) + (y - by) * (y - by);
+  return da < db || (da == db && (ay < by || (ay == by && ax < bx)));
+}
+
+/// The first x of row y from which (bx, by) is before (ax, ay), where ax < bx: the two change places once.
+RULE int nearestSwitch(int y, int ax, int ay, int bx, int by) {
+  int gap = (bx - ax) * (bx + ax) + (y - by) * (y - by) - (y - ay) * (y - ay);
+  int twice = 2 * (bx - ax);
+  int x = -floorDiv(-gap, twice);
+  return nearestBefore(x, y, bx, by, ax, ay) ? x : x + 1;
+}
+
+SPOOR_RULES_END
+#endif

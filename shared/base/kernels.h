@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace spoor {
+
+/// The inner loops over rows of cells, compiled once per instruction set from kernels.inl; every set gives the same
+/// bits. Pointers are to int32 cells; `n` counts cells and may be 0. Thread-safe.
+struct Kernels {
+  const char* name;  // "baseline", "avx2", "avx512"
+
+  /// Sum of the cell hashes (rules/mix.h) of a tile whose first cell is (x, y).
+  std::uint64_t (*hashTile)(const std::int32_t* cells, int x, int y, int plane);
+  std::int64_t (*sum)(const std::int32_t* cells, int n);
+  /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
+  void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
+  /// Stage penetration: overlap of a row of cells; returns how many are penetrating.
+  int (*overlap)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
+                 int obstacle_threshold, std::int32_t* overlap);
+  /// Stage nearest, column pass, one row on the way down: last_free[i] = y where overlap[i] is free, else unchanged;
+  /// copied to `out`.
+  void (*carryFree)(const std::int32_t* overlap, int n, int y, std::int32_t* last_free, std::int32_t* out);
+  /// The same on the way up, merged: out[i] = the nearer of out[i] and last_free[i], the lower y where equally near.
+  void (*mergeFree)(const std::int32_t* overlap, int n, int y, std::int32_t* last_free, std::int32_t* out);
+  /// Stage relax: pairs (a[i], b[i]); true if any soil moved. The rows must not overlap.
+  bool (*exchangeRows)(std::int32_t* a, std::int32_t* b, const std::int32_t* bedrock_a, const std::int32_t* bedrock_b,
+                       int n, int threshold);
+  bool (*exchangeRowsBeneath)(std::int32_t* a, std::int32_t* b, const std::int32_t* bedrock_a,
+                              const std::int32_t* bedrock_b, const std::int32_t* underside_a,
+                              const std::int32_t* underside_b, int n, int threshold, int obstacle_threshold);
+  /// Stage relax: pairs (cells[2i], cells[2i + 1]), i < pair_count.
+  bool (*exchangeWithin)(std::int32_t* cells, const std::int32_t* bedrock, int pair_count, int threshold);
+  bool (*exchangeWithinBeneath)(std::int32_t* cells, const std::int32_t* bedrock, const std::int32_t* underside,
+                                int pair_count, int threshold, int obstacle_threshold);
+};
+
+/// In a column without a free cell: so far away that it never wins.
+inline constexpr std::int32_t kNoFreeRow = -(1 << 20);
+
+/// The sets this processor runs, slowest first; "baseline" is always there.
+std::span<const Kernels* const> availableKernels();
+
+/// The fastest of them.
+const Kernels& kernels();
+
+}  // namespace spoor

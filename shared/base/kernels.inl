@@ -1,0 +1,143 @@
+// The bodies of kernels.h, compiled once per instruction set with SPOOR_KERNELS_NAME set. Nothing but rule headers and
+// plain loops in here: a template or an inline function of the standard library, compiled for a newer processor, could
+// be the copy that the linker keeps for everyone.
+#include "shaders/rules/exchange.h"
+#include "shaders/rules/mix.h"
+#include "shaders/rules/penetration.h"
+#include "shaders/rules/raster.h"
+#include "shared/base/kernels.h"
+
+namespace spoor {
+namespace {
+
+using std::int32_t;
+using std::int64_t;
+using std::uint64_t;
+
+uint64_t hashTile(const int32_t* cells, int x, int y, int plane) {
+  uint64_t low_sum = 0;
+  uint64_t high_sum = 0;
+  for (int row = 0; row < rules::kTileSize; ++row) {
+    // 64 values below 2^16 each: halves of the lanes are summed in 32 bits, which keeps the loop 32 bits wide.
+    uint32_t low_a = 0, low_b = 0, high_a = 0, high_b = 0;
+    const rules::uint row_key = rules::mix32(rules::uint(y + row) * 0x85ebca77u + rules::uint(plane));
+    for (int i = 0; i < rules::kTileSize; ++i) {
+      const rules::uint key = rules::mix32(rules::uint(x + i) * 0x9e3779b1u + row_key);
+      const int32_t value = cells[row * rules::kTileSize + i];
+      const rules::uint low = rules::cellMixLow(key, value);
+      const rules::uint high = rules::cellMixHigh(key, value);
+      low_a += low & 0xffffu;
+      low_b += low >> 16;
+      high_a += high & 0xffffu;
+      high_b += high >> 16;
+    }
+    low_sum += low_a + (uint64_t(low_b) << 16);
+    high_sum += high_a + (uint64_t(high_b) << 16);
+  }
+  return low_sum + (high_sum << 32);
+}
+
+int64_t sum(const int32_t* cells, int n) {
+  int64_t total = 0;
+  for (int i = 0; i < n; ++i) total += cells[i];
+  return total;
+}
+
+void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
+  for (int i = 0; i < n; ++i)
+    underside[i] = rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
+}
+
+int overlap(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
+            int32_t* __restrict out) {
+  int count = 0;
+  for (int i = 0; i < n; ++i) {
+    const int32_t value = rules::cellOverlap(height[i], bedrock[i], underside[i], obstacle_threshold);
+    out[i] = value;
+    count += value > 0 ? 1 : 0;
+  }
+  return count;
+}
+
+void carryFree(const int32_t* overlap, int n, int y, int32_t* __restrict last_free, int32_t* __restrict out) {
+  for (int i = 0; i < n; ++i) {
+    const int32_t free = overlap[i] == rules::kFree ? y : last_free[i];
+    last_free[i] = free;
+    out[i] = free;
+  }
+}
+
+void mergeFree(const int32_t* overlap, int n, int y, int32_t* __restrict last_free, int32_t* __restrict out) {
+  for (int i = 0; i < n; ++i) {
+    const int32_t above = overlap[i] == rules::kFree ? y : last_free[i];
+    last_free[i] = above;
+    // The unset value lies beneath every row: seen from above it is far, whichever way the rows run.
+    const int32_t to_above = above < 0 ? -kNoFreeRow * 2 : above - y;
+    out[i] = to_above < y - out[i] ? above : out[i];
+  }
+}
+
+inline bool exchange(int32_t& a, int32_t& b, int bedrock_a, int bedrock_b, int room_a, int room_b, int threshold) {
+  const int flow = rules::pairFlow(a, b, threshold, a - bedrock_a, b - bedrock_b, room_a, room_b);
+  a -= flow;
+  b += flow;
+  return flow != 0;
+}
+
+bool exchangeRows(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b, int n,
+                  int threshold) {
+  int moved = 0;
+  for (int i = 0; i < n; ++i)
+    moved |= exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::kHeightLimit, rules::kHeightLimit, threshold);
+  return moved != 0;
+}
+
+bool exchangeRowsBeneath(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b,
+                         const int32_t* underside_a, const int32_t* underside_b, int n, int threshold,
+                         int obstacle_threshold) {
+  int moved = 0;
+  for (int i = 0; i < n; ++i)
+    moved |= exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::roomBeneath(a[i], underside_a[i], obstacle_threshold),
+                      rules::roomBeneath(b[i], underside_b[i], obstacle_threshold), threshold);
+  return moved != 0;
+}
+
+bool exchangeWithin(int32_t* __restrict cells, const int32_t* bedrock, int pair_count, int threshold) {
+  int moved = 0;
+  for (int i = 0; i < pair_count; ++i) {
+    int32_t a = cells[2 * i], b = cells[2 * i + 1];
+    moved |= exchange(a, b, bedrock[2 * i], bedrock[2 * i + 1], rules::kHeightLimit, rules::kHeightLimit, threshold);
+    cells[2 * i] = a;
+    cells[2 * i + 1] = b;
+  }
+  return moved != 0;
+}
+
+bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, const int32_t* underside, int pair_count,
+                           int threshold, int obstacle_threshold) {
+  int moved = 0;
+  for (int i = 0; i < pair_count; ++i) {
+    int32_t a = cells[2 * i], b = cells[2 * i + 1];
+    moved |= exchange(a, b, bedrock[2 * i], bedrock[2 * i + 1],
+                      rules::roomBeneath(a, underside[2 * i], obstacle_threshold),
+                      rules::roomBeneath(b, underside[2 * i + 1], obstacle_threshold), threshold);
+    cells[2 * i] = a;
+    cells[2 * i + 1] = b;
+  }
+  return moved != 0;
+}
+
+}  // namespace
+
+#define SPOOR_TEXT2(x) #x
+#define SPOOR_TEXT(x) SPOOR_TEXT2(x)
+#define SPOOR_JOIN2(a, b) a##b
+#define SPOOR_JOIN(a, b) SPOOR_JOIN2(a, b)
+
+extern const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME);
+const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {
+    SPOOR_TEXT(SPOOR_KERNELS_NAME), hashTile,     sum,                 lowerAlong,     overlap,
+    carryFree,                      mergeFree,    exchangeRows,        exchangeRowsBeneath, exchangeWithin,
+    exchangeWithinBeneath};
+
+}  // namespace spoor

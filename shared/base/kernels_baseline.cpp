@@ -1,0 +1,2 @@
+#define SPOOR_KERNELS_NAME baseline
+#include "shared/base/kernels.inl"

@@ -1,0 +1,43 @@
+#include "shared/base/bytes.h"
+#include "shared/codec/tile_codec.h"
+#include "shared/world/pose_bytes.h"
+
+namespace spoor {
+
+std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base) {
+  ByteWriter writer;
+  writer.put(state.tick);
+  writer.put(std::uint32_t(state.poses.size()));
+  for (const Pose& pose : state.poses) putPose(writer, pose);
+  for (const Pose& pose : state.previous_poses) putPose(writer, pose);
+  std::vector<TileChange> changes;
+  PlaneCells ground;
+  for (const Tile* tile : state.tiles.sorted()) {
+    base.fillHeights(tile->at, ground);
+    changes.push_back(differenceOf(*tile, ground, kDormantVersion));
+  }
+  writer.putBytes(encodeTiles(changes));
+  return std::move(writer.bytes);
+}
+
+Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const PackId& id, const BaseTerrain& base) {
+  ByteReader reader(bytes);
+  WorldState state;
+  state.pack_id = id;
+  state.tick = reader.get<std::int32_t>();
+  const std::size_t count = reader.get<std::uint32_t>();
+  if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
+  if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
+    return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) + " bodies"};
+  for (std::size_t i = 0; i < count; ++i) state.poses.push_back(getPose(reader));
+  for (std::size_t i = 0; i < count; ++i) state.previous_poses.push_back(getPose(reader));
+  auto changes = decodeTiles(reader.getBytes(reader.left()), base.pack());
+  if (!changes) return Error{"snapshot: " + changes.error()};
+  for (const TileChange& change : *changes)
+    if (change.base_version != kDormantVersion || change.new_version > state.tick)
+      return Error{"snapshot: a tile is not against the base"};
+  if (Status status = applyTiles(state, base, *changes); !status) return Error{"snapshot: " + status.error()};
+  return state;
+}
+
+}  // namespace spoor

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shared/base/result.h"
+#include "shared/world/state.h"
+
+namespace spoor {
+
+/// Version of a tile that was dormant: it equals the base.
+inline constexpr std::int32_t kDormantVersion = -1;
+
+/// What one tick (or the whole time since the base, in a snapshot) did to one tile.
+struct TileChange {
+  TileCoordinate at;
+  std::int32_t base_version = kDormantVersion;  // version the difference is against; kDormantVersion: the base terrain
+  std::int32_t new_version = 0;
+  WakeMask wake_mask = 0;
+  std::uint64_t hash = 0;                       // the tile's hash afterwards
+  // The box of changed cells within the tile, and new - old height in it, row-major. width 0: no cell changed.
+  std::uint8_t x = 0, y = 0, width = 0, height = 0;
+  std::vector<std::int32_t> difference;
+};
+
+/// What leads from `before` to the tile's present heights; the box is the smallest that holds every changed cell.
+TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t base_version);
+
+/// Canonical bytes of changes, meant to be compressed afterwards: zigzag differences split into byte planes.
+std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes);
+
+/// Safe on untrusted bytes. Checks structure and ranges; tiles must lie in the pack's world, in (y, x) order, once each.
+Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack);
+
+/// Applies changes to a state's tiles and keeps its sums. All is checked first (versions, height range, every tile's
+/// hash); on an error, which names the tile, the state is untouched.
+[[nodiscard]] Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes);
+
+/// One tick as the server publishes it and the session file could replay it to a viewer.
+struct TickUpdate {
+  std::int32_t tick = 0;
+  std::uint64_t state_hash = 0;
+  std::vector<Pose> poses;              // of every body after this tick
+  std::vector<std::uint8_t> tiles;      // encodeTiles
+};
+
+/// Takes a state from tick - 1 to tick. Safe on untrusted content. On an error the state is untouched, but where only
+/// the state hash differs afterwards: then it has been applied and the error says both hashes.
+[[nodiscard]] Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& update);
+
+/// A whole state in bytes, meant to be compressed: tick, poses and every live tile against its base.
+std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base);
+
+/// Safe on untrusted bytes.
+Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const PackId& id, const BaseTerrain& base);
+
+}  // namespace spoor

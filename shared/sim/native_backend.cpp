@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <thread>
+
+#include "shaders/rules/exchange.h"
+#include "shared/sim/native_stages.h"
+
+namespace spoor {
+namespace {
+
+// Bytes that a stage reads and writes, for the figure TickEffect::bytes_moved.
+constexpr std::int64_t kGatherBytes = 16;       // per active cell: height and bedrock, in and out
+constexpr std::int64_t kClearBytes = 4;         // per active cell and sub-step: underside
+constexpr std::int64_t kPenetrationBytes = 20;  // per domain cell: depth lowers the underside; three planes in, one out
+constexpr std::int64_t kNearestBytes = 16;      // per domain cell: two column passes, in and out
+constexpr std::int64_t kDisplaceBytes = 48;     // per penetrating cell: target, sums and height, in and out
+constexpr std::int64_t kPairBytes = 24;         // two heights in and out, two bedrocks in
+constexpr std::int64_t kHashBytes = 8;          // per active cell: compare with the tile
+
+class NativeBackend final : public Backend {
+ public:
+  explicit NativeBackend(const NativeOptions& options)
+      : pool_(options.thread_count > 0 ? options.thread_count : std::max(1, int(std::thread::hardware_concurrency()))),
+        kernels_(options.kernels != nullptr ? options.kernels : &kernels()),
+        skip_settled_(options.skip_settled) {}
+
+  std::string name() const override {
+    return std::string("native (") + kernels_->name + ", " + std::to_string(pool_.threadCount()) + " threads)";
+  }
+
+  TickEffect run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
+    const NativeContext context{base.pack(), *kernels_, pool_, area_};
+    TickEffect effect;
+    std::vector<Tile*> made_live;
+    {
+      StageTimer timer(effect.stage_ms, Stage::active);
+      made_live = area_.gather(plan, base, state, pool_);
+    }
+    effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
+    effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
+    int sweep = 0;
+    for (const SubStep& sub_step : plan.sub_steps) {
+      runSubStep(context, sub_step, sweep, effect);
+      sweep += sub_step.sweep_count;
+    }
+    StageTimer timer(effect.stage_ms, Stage::hash);
+    effect.changes = runHash(context, plan, made_live, state);
+    return effect;
+  }
+
+ private:
+  void runSubStep(const NativeContext& context, const SubStep& sub_step, int sweep, TickEffect& effect) {
+    const int step = sweep * rules::kMatchingCount;
+    {
+      StageTimer timer(effect.stage_ms, Stage::depth);
+      covered_before_ = area_.covered;
+      area_.clearUnderside(context.pack, pool_);
+      runDepth(context, sub_step);
+      // Where a body was or is, room beneath it may have changed.
+      for (std::size_t i = 0; i < area_.covered.size(); ++i)
+        if ((area_.covered[i] | covered_before_[i]) != 0) area_.last_change[i] = step;
+    }
+    effect.bytes_moved += effect.active_cells * kClearBytes;
+    domains_.resize(std::max(domains_.size(), sub_step.domains.size()));
+    for (std::size_t i = 0; i < sub_step.domains.size(); ++i) {
+      DomainWork& domain = domains_[i];
+      domain.reset(sub_step.domains[i].box, area_);
+      const auto cells = std::int64_t(domain.overlap.size());
+      effect.domain_cells += cells;
+      effect.bytes_moved += cells * kPenetrationBytes;
+      {
+        StageTimer timer(effect.stage_ms, Stage::penetration);
+        runPenetration(context, domain);
+      }
+      effect.penetrating_cells += domain.penetrating_count;
+      if (domain.penetrating_count == 0) continue;
+      effect.bytes_moved += cells * kNearestBytes + domain.penetrating_count * kDisplaceBytes;
+      {
+        StageTimer timer(effect.stage_ms, Stage::nearest);
+        runNearest(context, domain);
+      }
+      StageTimer timer(effect.stage_ms, Stage::displace);
+      runDisplace(context, domain, step);
+    }
+    StageTimer timer(effect.stage_ms, Stage::relax);
+    const std::int64_t pairs = runRelax(context, sweep, sub_step.sweep_count, skip_settled_);
+    effect.pairs_visited += pairs;
+    effect.bytes_moved += pairs * kPairBytes;
+  }
+
+  ThreadPool pool_;
+  const Kernels* kernels_;
+  bool skip_settled_;
+  WorkArea area_;
+  std::vector<std::uint8_t> covered_before_;
+  std::vector<DomainWork> domains_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options) { return std::make_unique<NativeBackend>(options); }
+
+}  // namespace spoor

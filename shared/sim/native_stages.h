@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shared/base/kernels.h"
+#include "shared/sim/backend.h"
+#include "shared/sim/work_area.h"
+
+namespace spoor {
+
+/// What the native stages of one backend work with.
+struct NativeContext {
+  const ScenePack& pack;
+  const Kernels& kernels;
+  ThreadPool& pool;
+  WorkArea& area;
+};
+
+/// Planes of one domain, row-major [height * width] of its box, and where its rows lie in the work area.
+struct DomainWork {
+  CellBox box;
+  std::vector<std::size_t> row_offset;      // [rows] offset of the row's first cell in the work area's planes
+  std::vector<std::int32_t> overlap;        // see rules/penetration.h
+  std::vector<int> penetrating_in_row;      // [rows]
+  int penetrating_count = 0;
+  std::vector<std::int32_t> nearest_row;    // y of the nearest free cell of the same column, relative to the box
+  std::vector<std::int32_t> target;         // index of the nearest free cell in this domain, or kNoTarget
+  std::vector<std::int64_t> requested;      // soil that wants to come to a cell; 0 everywhere between ticks
+  std::vector<std::int64_t> granted;        // what of it was let in where not all fits; 0 likewise
+
+  int width() const { return box.x1 - box.x0; }
+  int rows() const { return box.y1 - box.y0; }
+  void reset(const CellBox& new_box, const WorkArea& area);
+};
+
+/// Stage depth: the lowest point of the sub-step's bodies over every cell of their domains, in the area's undersides;
+/// marks covered segments.
+void runDepth(const NativeContext& context, const SubStep& sub_step);
+
+/// Stage penetration: fills overlap and its counts.
+void runPenetration(const NativeContext& context, DomainWork& domain);
+
+/// Stage nearest: fills target for penetrating cells. Only where penetrating_count > 0.
+void runNearest(const NativeContext& context, DomainWork& domain);
+
+/// Stage displace: moves the soil; marks changed segments with `step`. Only after runNearest.
+void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step);
+
+/// Stage relax: `sweep_count` sweeps over all active tiles, the first of them being number `first_sweep` of this tick.
+/// Returns the pairs of cells visited.
+std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled);
+
+/// Stage hash: brings changed cells back to their tiles, with hash, sums and wake mask, and says what changed.
+std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& plan, const std::vector<Tile*>& made_live,
+                                WorldState& state);
+
+}  // namespace spoor

@@ -1,0 +1,97 @@
+// Stage nearest: the exact nearest free cell of every penetrating one, in two passes.
+#include <algorithm>
+
+#include "shaders/rules/nearest.h"
+#include "shared/sim/native_stages.h"
+
+namespace spoor {
+namespace {
+
+/// For every cell the nearest free row of its own column.
+void searchColumns(const NativeContext& context, DomainWork& domain) {
+  constexpr int kChunkColumns = 64;
+  const int width = domain.width(), rows = domain.rows();
+  context.pool.forEach((width + kChunkColumns - 1) / kChunkColumns, [&](int chunk, int) {
+    const int x = chunk * kChunkColumns;
+    const int count = std::min(kChunkColumns, width - x);
+    std::int32_t last_free[kChunkColumns];
+    std::fill_n(last_free, kChunkColumns, kNoFreeRow);
+    for (int y = 0; y < rows; ++y) {
+      const std::size_t at = std::size_t(y) * width + x;
+      context.kernels.carryFree(domain.overlap.data() + at, count, y, last_free, domain.nearest_row.data() + at);
+    }
+    std::fill_n(last_free, kChunkColumns, kNoFreeRow);
+    for (int y = rows - 1; y >= 0; --y) {
+      const std::size_t at = std::size_t(y) * width + x;
+      context.kernels.mergeFree(domain.overlap.data() + at, count, y, last_free, domain.nearest_row.data() + at);
+    }
+  });
+}
+
+/// The best column from each x of a row: the lower envelope of the columns' parabolas, left to right.
+class RowEnvelope {
+ public:
+  void search(const DomainWork& domain, int y, std::int32_t* target) {
+    const int width = domain.width();
+    const std::int32_t* overlap = domain.overlap.data() + std::size_t(y) * width;
+    const std::int32_t* free_row = domain.nearest_row.data() + std::size_t(y) * width;
+    const auto [first, last] = queriedColumns(overlap, width);
+    // No column farther away than the worst vertical distance can win.
+    int reach = 0;
+    for (int x = first; x <= last; ++x)
+      if (overlap[x] > 0) reach = std::max(reach, free_row[x] == kNoFreeRow ? width : std::abs(free_row[x] - y));
+    build(free_row, y, std::max(first - reach, 0), std::min(last + reach + 1, width));
+    std::size_t part = 0;
+    for (int x = first; x <= last; ++x) {
+      while (part + 1 < columns_.size() && starts_[part + 1] <= x) ++part;
+      if (overlap[x] > 0)
+        target[x] = columns_.empty() ? rules::kNoTarget : free_row[columns_[part]] * width + columns_[part];
+    }
+  }
+
+ private:
+  static std::pair<int, int> queriedColumns(const std::int32_t* overlap, int width) {
+    int first = 0, last = width - 1;
+    while (overlap[first] <= 0) ++first;
+    while (overlap[last] <= 0) --last;
+    return {first, last};
+  }
+
+  void build(const std::int32_t* free_row, int y, int begin, int end) {
+    columns_.clear();
+    starts_.clear();
+    for (int x = begin; x < end; ++x) {
+      if (free_row[x] == kNoFreeRow) continue;
+      int start = begin;
+      while (!columns_.empty()) {
+        const int top = columns_.back();
+        start = rules::nearestSwitch(y, top, free_row[top], x, free_row[x]);
+        if (start > starts_.back()) break;
+        columns_.pop_back();
+        starts_.pop_back();
+        start = begin;
+      }
+      if (start >= end) continue;
+      columns_.push_back(x);
+      starts_.push_back(start);
+    }
+  }
+
+  std::vector<int> columns_, starts_;  // columns_[i] is the best from starts_[i] on
+};
+
+}  // namespace
+
+void runNearest(const NativeContext& context, DomainWork& domain) {
+  const std::size_t cells = domain.overlap.size();
+  domain.nearest_row.resize(cells);
+  domain.target.resize(cells);
+  searchColumns(context, domain);
+  std::vector<RowEnvelope> envelopes(std::size_t(context.pool.threadCount()));
+  context.pool.forEach(domain.rows(), [&](int y, int thread) {
+    if (domain.penetrating_in_row[y] > 0)
+      envelopes[thread].search(domain, y, domain.target.data() + std::size_t(y) * domain.width());
+  });
+}
+
+}  // namespace spoor

@@ -1,0 +1,32 @@
+// Stage penetration: which cells a body overlaps, and by how much.
+#include <numeric>
+
+#include "shared/sim/native_stages.h"
+
+namespace spoor {
+
+void DomainWork::reset(const CellBox& new_box, const WorkArea& area) {
+  box = new_box;
+  const std::size_t cells = std::size_t(width()) * std::size_t(rows());
+  row_offset.resize(std::size_t(rows()));
+  for (int row = 0; row < rows(); ++row) row_offset[std::size_t(row)] = area.offsetAt(box.x0, box.y0 + row);
+  overlap.resize(cells);
+  penetrating_in_row.resize(std::size_t(rows()));
+  penetrating_count = 0;
+}
+
+void runPenetration(const NativeContext& context, DomainWork& domain) {
+  constexpr int kChunkRows = 32;
+  const int chunk_count = (domain.rows() + kChunkRows - 1) / kChunkRows;
+  context.pool.forEach(chunk_count, [&](int chunk, int) {
+    for (int row = chunk * kChunkRows; row < std::min((chunk + 1) * kChunkRows, domain.rows()); ++row) {
+      const std::size_t from = domain.row_offset[row];
+      domain.penetrating_in_row[row] = context.kernels.overlap(
+          context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,
+          domain.width(), context.pack.obstacle_threshold_q, domain.overlap.data() + std::size_t(row) * domain.width());
+    }
+  });
+  domain.penetrating_count = std::accumulate(domain.penetrating_in_row.begin(), domain.penetrating_in_row.end(), 0);
+}
+
+}  // namespace spoor

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shaders/rules/raster.h"
+#include "shared/base/result.h"
+#include "shared/world/state.h"
+
+namespace spoor {
+
+/// Cells [x0, x1) x [y0, y1).
+struct CellBox {
+  std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+  bool meets(const CellBox& other) const { return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1; }
+  bool operator==(const CellBox&) const = default;
+};
+
+/// A body's mesh in one pose, ready for the raster: points are subcells relative to cell (origin_x, origin_y) and
+/// height units relative to z_q.
+struct PlacedBody {
+  std::int32_t body_index = 0;
+  std::int32_t origin_x = 0, origin_y = 0;
+  std::int32_t z_q = 0;
+  CellBox box;  // every cell that the mesh can cover, clipped to the world
+  std::vector<rules::RasterPoint> points;
+};
+
+/// A rectangle in which displaced soil finds its targets: joined boxes of bodies, grown by one cell.
+struct Domain {
+  CellBox box;
+  std::vector<int> bodies;  // indices into SubStep::bodies
+};
+
+/// Stages 4 to 8 once: where the bodies are, and how many sweeps follow.
+struct SubStep {
+  std::vector<PlacedBody> bodies;
+  std::vector<Domain> domains;  // disjoint, in (y0, x0) order
+  int sweep_count = 0;
+};
+
+/// What a tick simulates. A function of state and input, never of batching (DESIGN.md, "Active").
+struct TickPlan {
+  std::int32_t tick = 0;
+  std::vector<TileCoordinate> active;  // in (y, x) order
+  std::vector<SubStep> sub_steps;      // none where nothing is active
+  bool too_fast = false;               // a body moves farther than one cell per sub-step, at the most sub-steps there are
+};
+
+inline constexpr int kSubStepLimit = 32;
+
+/// Checks input poses: one for each body, coordinates far enough from the integers' ends.
+[[nodiscard]] Status validatePoses(const ScenePack& pack, std::span<const Pose> poses);
+
+/// A body of the pack in a pose (valid). Vertices are placed to the subcell below.
+PlacedBody placeBody(const ScenePack& pack, int body_index, const Pose& pose);
+
+/// Stage active: which tiles and bodies take part in the tick that leads from `state` to the given poses (valid).
+TickPlan planTick(const ScenePack& pack, const WorldState& state, std::span<const Pose> poses);
+
+}  // namespace spoor

@@ -1,0 +1,94 @@
+#include "shared/sim/work_area.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shared/base/assert.h"
+
+namespace spoor {
+namespace {
+
+constexpr int kSize = rules::kTileSize;
+
+/// Cells outside the world hold no soil and take none.
+void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
+  const int inside_x = std::min(pack.width_cells - run.x0(), run.width());
+  const int inside_y = std::min(pack.height_cells - run.first.y * kSize, kSize);
+  if (inside_x == run.width() && inside_y == kSize) return;
+  for (int row = 0; row < kSize; ++row) {
+    const int from = row < inside_y ? inside_x : 0;
+    std::int32_t* underside = area.underside.data() + run.rowOffset(row);
+    std::fill(underside + from, underside + run.width(), -rules::kHeightLimit);
+    for (int tile = from / kSize; tile < run.tile_count; ++tile)
+      area.covered[run.segment_offset + std::size_t(row * run.tile_count + tile)] = 1;
+  }
+}
+
+}  // namespace
+
+std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool) {
+  const int count = int(plan.active.size());
+  tiles.assign(plan.active.size(), nullptr);
+  runs.clear();
+  bands.clear();
+  run_of_tile.clear();
+  std::vector<int> missing;
+  std::size_t cells = 0, segments = 0;
+  for (int i = 0; i < count; ++i) {
+    const TileCoordinate at = plan.active[i];
+    tiles[i] = state.tiles.find(at);
+    if (tiles[i] == nullptr) missing.push_back(i);
+    if (bands.empty() || bands.back().tile_y != at.y) bands.push_back({at.y, int(runs.size()), 0});
+    if (bands.back().run_count == 0 || runs.back().first.x + runs.back().tile_count != at.x) {
+      runs.push_back({at, 0, cells, segments});
+      ++bands.back().run_count;
+    }
+    ++runs.back().tile_count;
+    run_of_tile.push_back(int(runs.size()) - 1);
+    cells += rules::kTileCells;
+    segments += kSize;
+  }
+  std::vector<std::unique_ptr<Tile>> fresh(missing.size());
+  pool.forEach(int(missing.size()), [&](int i, int) { fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick); });
+  std::vector<Tile*> made;
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    tiles[missing[i]] = &state.tiles.insert(std::move(fresh[i]));
+    made.push_back(tiles[missing[i]]);
+  }
+
+  height.resize(cells);
+  bedrock.resize(cells);
+  underside.resize(cells);
+  covered.assign(segments, 0);
+  last_change.assign(segments, 0);
+  pool.forEach(count, [&](int i, int) {
+    const Run& run = runs[run_of_tile[i]];
+    for (int row = 0; row < kSize; ++row) {
+      const std::size_t to = run.rowOffset(row) + std::size_t((tiles[i]->at.x - run.first.x) * kSize);
+      std::memcpy(height.data() + to, tiles[i]->height().data() + row * kSize, kSize * sizeof(std::int32_t));
+      std::memcpy(bedrock.data() + to, tiles[i]->bedrock->data() + row * kSize, kSize * sizeof(std::int32_t));
+    }
+  });
+  return made;
+}
+
+const Run& WorkArea::runAt(std::int32_t x, std::int32_t y) const {
+  const int tile_y = y / kSize, tile_x = x / kSize;
+  const auto band = std::ranges::lower_bound(bands, tile_y, {}, &Band::tile_y);
+  SPOOR_ASSERT(band != bands.end() && band->tile_y == tile_y);
+  int found = band->first_run;
+  while (found + 1 < band->first_run + band->run_count && runs[found + 1].first.x <= tile_x) ++found;
+  SPOOR_ASSERT(runs[found].first.x <= tile_x && tile_x < runs[found].first.x + runs[found].tile_count);
+  return runs[found];
+}
+
+void WorkArea::clearUnderside(const ScenePack& pack, ThreadPool& pool) {
+  pool.forEach(int(runs.size()), [&](int i, int) {
+    const Run& run = runs[i];
+    std::fill_n(underside.begin() + std::ptrdiff_t(run.cell_offset), run.width() * kSize, rules::kNoUnderside);
+    std::fill_n(covered.begin() + std::ptrdiff_t(run.segment_offset), run.tile_count * kSize, std::uint8_t(0));
+    closeBorder(pack, *this, run);
+  });
+}
+
+}  // namespace spoor

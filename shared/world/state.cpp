@@ -1,0 +1,41 @@
+#include "shared/world/state.h"
+
+#include <numeric>
+
+#include "shared/base/hash.h"
+#include "shared/world/pose_bytes.h"
+#include "shared/world/script.h"
+
+namespace spoor {
+std::uint64_t stateHash(const WorldState& state) {
+  ByteWriter writer;
+  writer.put(state.tick);
+  writer.put(state.pack_id.low);
+  writer.put(state.pack_id.high);
+  writer.put(std::uint32_t(state.poses.size()));
+  for (const Pose& pose : state.poses) putPose(writer, pose);
+  for (const Pose& pose : state.previous_poses) putPose(writer, pose);
+  return state.tiles_hash + hashBytes(writer.bytes);
+}
+
+WorldState initialState(const PackId& id, const BaseTerrain& base) {
+  WorldState state;
+  state.pack_id = id;
+  state.poses = Script(base).poses(0);
+  state.previous_poses = state.poses;
+  return state;
+}
+
+bool recount(const WorldState& state) {
+  std::uint64_t tiles_hash = 0;
+  Ledger ledger;
+  for (const Tile* tile : state.tiles.sorted()) {
+    if (tileHash(*tile) != tile->hash) return false;
+    tiles_hash += tileStateHash(*tile);
+    ledger.initial += tile->initial;
+    ledger.ground += std::accumulate(tile->height().begin(), tile->height().end(), std::int64_t(0));
+  }
+  return tiles_hash == state.tiles_hash && ledger == state.ledger;
+}
+
+}  // namespace spoor

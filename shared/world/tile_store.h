@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "shared/world/base_terrain.h"
+
+namespace spoor {
+
+/// Named layers of a tile. Store, deltas, snapshots and hashes are written over a set of them.
+enum class Plane : std::uint8_t { height = 0 };
+inline constexpr int kPlaneCount = 1;
+
+/// Bits of a wake mask: which tiles a changed tile keeps active in the next tick. Bit (dy + 1) * 3 + (dx + 1); the tile
+/// itself is bit 4. 0: asleep.
+using WakeMask = std::uint16_t;
+inline constexpr WakeMask kWakeSelf = 1u << 4;
+inline constexpr WakeMask kWakeMaskLimit = 1u << 9;
+
+using PlaneCells = std::array<std::int32_t, rules::kTileCells>;
+
+/// A live tile. Everything but `planes`, `version_tick` and `wake_mask` is derived and kept for speed.
+struct Tile {
+  TileCoordinate at;
+  std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // height is always there
+  std::unique_ptr<PlaneCells> bedrock;
+  std::int32_t version_tick = 0;       // the tick at which it last changed, or became live
+  WakeMask wake_mask = 0;              // set by TileStore::setWake
+  std::int32_t awake_index = -1;       // place in the store's list of awake tiles
+  std::uint64_t hash = 0;              // sum of its cells' hashes; cells outside the world count too
+  std::int64_t ground = 0;             // sum of its heights, 0.1 mm * cells
+  std::int64_t initial = 0;            // the same when it became live
+
+  PlaneCells& height() { return *planes[int(Plane::height)]; }
+  const PlaneCells& height() const { return *planes[int(Plane::height)]; }
+};
+
+/// Sums over live tiles, 0.1 mm * cells. Balanced where error() is 0.
+struct Ledger {
+  std::int64_t initial = 0;
+  std::int64_t ground = 0;
+  std::int64_t compacted = 0;
+  std::int64_t craters = 0;
+  std::int64_t events = 0;
+  std::int64_t error() const { return initial + events + craters - ground - compacted; }
+  bool operator==(const Ledger&) const = default;
+};
+
+/// A tile as it is at the moment it becomes live: equal to the base. `at` must lie in the world (asserted).
+std::unique_ptr<Tile> makeTile(TileCoordinate at, const BaseTerrain& base, std::int32_t tick);
+
+/// The live tiles of a world. Dormant tiles are not here and cost nothing.
+class TileStore {
+ public:
+  /// The tile, or nullptr where it is dormant.
+  Tile* find(TileCoordinate at);
+  const Tile* find(TileCoordinate at) const;
+
+  /// Makes a dormant tile live. It must have been dormant (asserted).
+  Tile& insert(std::unique_ptr<Tile> tile);
+
+  /// Sets a tile's wake mask and keeps the list of awake tiles.
+  void setWake(Tile& tile, WakeMask mask);
+  /// Tiles whose wake mask is not 0, in no particular order: for filling ordered sets only.
+  const std::vector<Tile*>& awake() const { return awake_; }
+
+  /// Live tiles in (y, x) order.
+  std::vector<Tile*> sorted();
+  std::vector<const Tile*> sorted() const;
+
+  std::size_t size() const { return tiles_.size(); }
+  /// Bytes held by live tiles.
+  std::size_t memoryBytes() const;
+
+ private:
+  std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_;
+  std::vector<Tile*> awake_;
+};
+
+/// Sum of the hashes of a tile's cells over all planes, from the cells.
+std::uint64_t tileHash(const Tile& tile);
+/// What a tile adds to the state hash: its cells, that it is live, and its wake mask.
+std::uint64_t tileStateHash(const Tile& tile);
+
+/// Number of tiles along each side that the world touches.
+TileCoordinate tileExtent(const ScenePack& pack);
+
+}  // namespace spoor
