@@ -13,6 +13,9 @@ struct Kernels {
   /// Sum of the cell hashes (rules/mix.h) of a tile whose first cell is (x, y).
   std::uint64_t (*hashTile)(const std::int32_t* cells, int x, int y, int plane);
   std::int64_t (*sum)(const std::int32_t* cells, int n);
+  /// Smallest and largest of n >= 1 cells.
+  std::int32_t (*lowest)(const std::int32_t* cells, int n);
+  std::int32_t (*highest)(const std::int32_t* cells, int n);
   /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
   void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
   /// Stage penetration: overlap of a row of cells; returns how many are penetrating.
@@ -29,7 +32,8 @@ struct Kernels {
   bool (*exchangeRowsBeneath)(std::int32_t* a, std::int32_t* b, const std::int32_t* bedrock_a,
                               const std::int32_t* bedrock_b, const std::int32_t* underside_a,
                               const std::int32_t* underside_b, int n, int threshold, int obstacle_threshold);
-  /// Stage relax: pairs (cells[2i], cells[2i + 1]), i < pair_count.
+  /// Stage relax: pairs (cells[2i], cells[2i + 1]), i < pair_count <= 32. One more cell than the pairs is read, so that
+  /// the loop runs over neighbours instead of gathering pairs.
   bool (*exchangeWithin)(std::int32_t* cells, const std::int32_t* bedrock, int pair_count, int threshold);
   bool (*exchangeWithinBeneath)(std::int32_t* cells, const std::int32_t* bedrock, const std::int32_t* underside,
                                 int pair_count, int threshold, int obstacle_threshold);

@@ -43,6 +43,18 @@ int64_t sum(const int32_t* cells, int n) {
   return total;
 }
 
+int32_t lowest(const int32_t* cells, int n) {
+  int32_t result = cells[0];
+  for (int i = 1; i < n; ++i) result = rules::minInt(result, cells[i]);
+  return result;
+}
+
+int32_t highest(const int32_t* cells, int n) {
+  int32_t result = cells[0];
+  for (int i = 1; i < n; ++i) result = rules::maxInt(result, cells[i]);
+  return result;
+}
+
 void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
   for (int i = 0; i < n; ++i)
     underside[i] = rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
@@ -102,29 +114,37 @@ bool exchangeRowsBeneath(int32_t* __restrict a, int32_t* __restrict b, const int
   return moved != 0;
 }
 
-bool exchangeWithin(int32_t* __restrict cells, const int32_t* bedrock, int pair_count, int threshold) {
+// Flows between all neighbours, those of the other parity masked out: twice the arithmetic of the pairs alone, but in
+// consecutive lanes, which is faster than taking pairs apart and putting them together.
+template <typename FlowOf>
+inline bool exchangeNeighbours(int32_t* __restrict cells, int pair_count, FlowOf flow_of) {
+  constexpr int kMost = rules::kTileSize;
+  int32_t flow[kMost + 1];
   int moved = 0;
-  for (int i = 0; i < pair_count; ++i) {
-    int32_t a = cells[2 * i], b = cells[2 * i + 1];
-    moved |= exchange(a, b, bedrock[2 * i], bedrock[2 * i + 1], rules::kHeightLimit, rules::kHeightLimit, threshold);
-    cells[2 * i] = a;
-    cells[2 * i + 1] = b;
+  flow[0] = 0;
+  for (int i = 0; i < 2 * pair_count; ++i) {
+    const int32_t f = flow_of(i) & ((i & 1) - 1);
+    flow[i + 1] = f;
+    moved |= f;
   }
+  for (int i = 0; i < 2 * pair_count; ++i) cells[i] += flow[i] - flow[i + 1];
   return moved != 0;
+}
+
+bool exchangeWithin(int32_t* __restrict cells, const int32_t* bedrock, int pair_count, int threshold) {
+  return exchangeNeighbours(cells, pair_count, [=](int i) {
+    return rules::pairFlow(cells[i], cells[i + 1], threshold, cells[i] - bedrock[i], cells[i + 1] - bedrock[i + 1],
+                           rules::kHeightLimit, rules::kHeightLimit);
+  });
 }
 
 bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, const int32_t* underside, int pair_count,
                            int threshold, int obstacle_threshold) {
-  int moved = 0;
-  for (int i = 0; i < pair_count; ++i) {
-    int32_t a = cells[2 * i], b = cells[2 * i + 1];
-    moved |= exchange(a, b, bedrock[2 * i], bedrock[2 * i + 1],
-                      rules::roomBeneath(a, underside[2 * i], obstacle_threshold),
-                      rules::roomBeneath(b, underside[2 * i + 1], obstacle_threshold), threshold);
-    cells[2 * i] = a;
-    cells[2 * i + 1] = b;
-  }
-  return moved != 0;
+  return exchangeNeighbours(cells, pair_count, [=](int i) {
+    return rules::pairFlow(cells[i], cells[i + 1], threshold, cells[i] - bedrock[i], cells[i + 1] - bedrock[i + 1],
+                           rules::roomBeneath(cells[i], underside[i], obstacle_threshold),
+                           rules::roomBeneath(cells[i + 1], underside[i + 1], obstacle_threshold));
+  });
 }
 
 }  // namespace
@@ -136,7 +156,7 @@ bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, co
 
 extern const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME);
 const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {
-    SPOOR_TEXT(SPOOR_KERNELS_NAME), hashTile,     sum,                 lowerAlong,     overlap,
+    SPOOR_TEXT(SPOOR_KERNELS_NAME), hashTile, sum, lowest, highest, lowerAlong, overlap,
     carryFree,                      mergeFree,    exchangeRows,        exchangeRowsBeneath, exchangeWithin,
     exchangeWithinBeneath};
 

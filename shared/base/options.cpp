@@ -53,6 +53,13 @@ void Options::add(std::string name, std::string unit, std::string help, double* 
                       [=](const auto& text) { return parseNumber(text, lowest, highest, target); }});
 }
 
+void Options::add(std::string name, std::string unit, std::string help, std::vector<std::string>* target) {
+  entries_.push_back({std::move(name), std::move(unit), std::move(help) + " (may be repeated)", "", true, [target](const auto& text) {
+                        target->push_back(text);
+                        return Status{};
+                      }});
+}
+
 void Options::addFlag(std::string name, std::string help, bool* target) {
   entries_.push_back({std::move(name), "", std::move(help), "", false, [target](const auto&) {
                         *target = true;

@@ -21,6 +21,8 @@ class Options {
   void add(std::string name, std::string unit, std::string help, std::int64_t* target, std::int64_t lowest,
            std::int64_t highest);
   void add(std::string name, std::string unit, std::string help, double* target, double lowest, double highest);
+  /// May be given several times; each adds a value.
+  void add(std::string name, std::string unit, std::string help, std::vector<std::string>* target);
   void addFlag(std::string name, std::string help, bool* target);
   /// Plain arguments, in order; `count` is how many there may be at most.
   void addPlain(std::string name, std::string help, std::vector<std::string>* target, std::size_t count);

@@ -1,6 +1,7 @@
 #include "shared/codec/tile_codec.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "shared/base/bytes.h"
@@ -54,12 +55,17 @@ TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t
   constexpr int size = rules::kTileSize;
   int x_first = size, x_last = -1, y_first = size, y_last = -1;
   const PlaneCells& after = tile.height();
-  for (int i = 0; i < rules::kTileCells; ++i) {
-    if (after[i] == before[i]) continue;
-    x_first = std::min(x_first, i % size);
-    x_last = std::max(x_last, i % size);
-    y_first = std::min(y_first, i / size);
-    y_last = std::max(y_last, i / size);
+  for (int y = 0; y < size; ++y) {
+    const std::int32_t* a = after.data() + y * size;
+    const std::int32_t* b = before.data() + y * size;
+    if (std::memcmp(a, b, size * sizeof(*a)) == 0) continue;
+    int first = 0, last = size - 1;
+    while (a[first] == b[first]) ++first;
+    while (a[last] == b[last]) --last;
+    x_first = std::min(x_first, first);
+    x_last = std::max(x_last, last);
+    y_first = std::min(y_first, y);
+    y_last = y;
   }
   TileChange change{tile.at, base_version, tile.version_tick, tile.wake_mask, tile.hash, 0, 0, 0, 0, {}};
   if (x_last < 0) return change;

@@ -38,4 +38,7 @@ struct NativeOptions {
 };
 std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options = {});
 
+/// The backend of a name: native, or auto for the best that this build and machine have. Errors: any other name.
+Result<std::unique_ptr<Backend>> makeBackend(const std::string& name, const NativeOptions& options = {});
+
 }  // namespace spoor

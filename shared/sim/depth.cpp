@@ -6,7 +6,7 @@
 namespace spoor {
 namespace {
 
-constexpr int kChunkRows = 16;
+constexpr int kLeastChunkRows = 16;
 
 /// A body's triangles and edges, set up once per sub-step.
 struct BodyRaster {
@@ -57,6 +57,10 @@ class RowTarget {
     const int u_origin = along_y ? body.origin_y : body.origin_x;
     const int first = std::max(rules::floorDiv(e.u0, rules::kSubcells), (along_y ? box_.y0 : box_.x0) - u_origin);
     const int last = std::min(rules::floorDiv(e.u1, rules::kSubcells), (along_y ? box_.y1 : box_.x1) - 1 - u_origin);
+    const int v_origin = along_y ? body.origin_x : body.origin_y;
+    if (rules::floorDiv(std::max(e.v0, e.v1), rules::kSubcells) < (along_y ? box_.x0 : box_.y0) - v_origin ||
+        rules::floorDiv(std::min(e.v0, e.v1), rules::kSubcells) >= (along_y ? box_.x1 : box_.y1) - v_origin)
+      return;
     for (int column = first; column <= last; ++column) {
       const rules::EdgeColumn cells = rules::edgeColumn(e, column);
       for (int v = cells.first; v <= cells.last; ++v) {
@@ -69,15 +73,13 @@ class RowTarget {
     }
   }
 
-  /// Marks the segments that an underside covers now.
-  void markCovered() {
+  /// Keeps each segment's lowest underside.
+  void noteLowest() {
     for (int y = box_.y0; y < box_.y1; ++y)
       for (int x = box_.x0; x < box_.x1;) {
         const int end = std::min((x / rules::kTileSize + 1) * rules::kTileSize, box_.x1);
-        const std::int32_t* cells = cellsAt(x, y);
-        std::int32_t lowest = rules::kNoUnderside;
-        for (int i = 0; i < end - x; ++i) lowest = std::min(lowest, cells[i]);
-        if (lowest < rules::kNoUnderside) context_.area.covered[context_.area.segmentAt(x, y)] = 1;
+        std::int32_t& lowest = context_.area.lowest_underside[context_.area.segmentAt(x, y)];
+        lowest = std::min(lowest, context_.kernels.lowest(cellsAt(x, y), end - x));
         x = end;
       }
   }
@@ -95,15 +97,18 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
   std::vector<BodyRaster> rasters(sub_step.bodies.size());
   context.pool.forEach(int(rasters.size()), [&](int i, int) { rasters[i] = setUp(context.pack, sub_step.bodies[i]); });
   for (const Domain& domain : sub_step.domains) {
-    const int chunk_count = (domain.box.y1 - domain.box.y0 + kChunkRows - 1) / kChunkRows;
+    // Every chunk looks at every primitive: as few chunks as still share the work out evenly.
+    const int rows = domain.box.y1 - domain.box.y0;
+    const int chunk_rows = std::max(kLeastChunkRows, rows / (4 * context.pool.threadCount()) + 1);
+    const int chunk_count = (rows + chunk_rows - 1) / chunk_rows;
     context.pool.forEach(chunk_count, [&](int chunk, int) {
-      const int y0 = domain.box.y0 + chunk * kChunkRows;
-      RowTarget target(context, {domain.box.x0, y0, domain.box.x1, std::min(y0 + kChunkRows, domain.box.y1)});
+      const int y0 = domain.box.y0 + chunk * chunk_rows;
+      RowTarget target(context, {domain.box.x0, y0, domain.box.x1, std::min(y0 + chunk_rows, domain.box.y1)});
       for (const int body : domain.bodies) {
         for (const auto& triangle : rasters[body].triangles) target.drawTriangle(triangle, *rasters[body].body);
         for (const auto& edge : rasters[body].edges) target.drawEdge(edge, *rasters[body].body);
       }
-      target.markCovered();
+      target.noteLowest();
     });
   }
 }

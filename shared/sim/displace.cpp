@@ -11,12 +11,14 @@ namespace {
 
 /// Adds a row's requests to their targets, one atomic add for each stretch of cells that share a target.
 template <typename AmountOf>
-void addToTargets(const DomainWork& domain, int row, std::vector<std::int64_t>& sums, AmountOf amount_of) {
+void addToTargets(DomainWork& domain, int row, std::vector<std::int64_t>& sums, AmountOf amount_of) {
   const int width = domain.width();
   std::int32_t target = rules::kNoTarget;
   std::int64_t amount = 0;
   const auto flush = [&] {
-    if (amount > 0) std::atomic_ref(sums[std::size_t(target)]).fetch_add(amount, std::memory_order_relaxed);
+    if (amount == 0) return;
+    std::atomic_ref(sums[std::size_t(target)]).fetch_add(amount, std::memory_order_relaxed);
+    std::atomic_ref(domain.receives[std::size_t(target / width)]).store(1, std::memory_order_relaxed);
   };
   for (std::size_t i = std::size_t(row) * width; i < std::size_t(row + 1) * width; ++i) {
     if (domain.overlap[i] <= 0 || domain.target[i] == rules::kNoTarget) continue;
@@ -30,34 +32,44 @@ void addToTargets(const DomainWork& domain, int row, std::vector<std::int64_t>& 
   flush();
 }
 
-/// What a free cell can take: the gap beneath a body, and never above the height limit.
-std::int32_t roomAt(const NativeContext& context, const DomainWork& domain, std::int32_t target) {
-  const std::size_t at = domain.row_offset[std::size_t(target / domain.width())] + std::size_t(target % domain.width());
-  return rules::roomBeneath(context.area.height[at], context.area.underside[at], context.pack.obstacle_threshold_q);
+/// What each cell with requests can take: the gap beneath a body, and never above the height limit.
+void findRoom(const NativeContext& context, DomainWork& domain, int row) {
+  const std::size_t first = std::size_t(row) * domain.width();
+  for (int x = 0; x < domain.width(); ++x) {
+    if (domain.requested[first + x] == 0) continue;
+    const std::size_t at = domain.row_offset[row] + x;
+    const std::int32_t room =
+        rules::roomBeneath(context.area.height[at], context.area.underside[at], context.pack.obstacle_threshold_q);
+    domain.room[first + x] = domain.requested[first + x] <= room ? DomainWork::kRoomForAll : room;
+  }
 }
 
 /// Sources give what their target grants. Where a target has room for all, its requests are its grants already.
 void takeFromSources(const NativeContext& context, DomainWork& domain, int row) {
   const std::size_t first = std::size_t(row) * domain.width();
+  std::int32_t* height = context.area.height.data() + domain.row_offset[row];
   addToTargets(domain, row, domain.granted, [&](std::size_t i) -> std::int64_t {
-    const std::int64_t requested = domain.requested[std::size_t(domain.target[i])];
-    const std::int32_t room = roomAt(context, domain, domain.target[i]);
-    const std::int32_t share = rules::grantedShare(domain.overlap[i], room, requested);
-    context.area.height[domain.row_offset[row] + (i - first)] -= share;
-    return requested <= room ? 0 : share;
+    const std::int32_t room = domain.room[std::size_t(domain.target[i])];
+    if (room == DomainWork::kRoomForAll) {
+      height[i - first] -= domain.overlap[i];
+      return 0;
+    }
+    const std::int32_t share = rules::grantedShare(domain.overlap[i], room, domain.requested[std::size_t(domain.target[i])]);
+    height[i - first] -= share;
+    return share;
   });
 }
 
 void giveToTargets(const NativeContext& context, DomainWork& domain, int row, std::int32_t step) {
-  const int width = domain.width();
-  for (int x = 0; x < width; ++x) {
-    const std::size_t i = std::size_t(row) * width + x;
-    if (domain.requested[i] == 0) continue;
-    const bool fits = domain.requested[i] <= roomAt(context, domain, std::int32_t(i));
-    context.area.height[domain.row_offset[row] + x] += std::int32_t(fits ? domain.requested[i] : domain.granted[i]);
+  const std::size_t first = std::size_t(row) * domain.width();
+  for (int x = 0; x < domain.width(); ++x) {
+    std::int64_t& requested = domain.requested[first + x];
+    if (requested == 0) continue;
+    std::int64_t& granted = domain.granted[first + x];
+    context.area.height[domain.row_offset[row] + x] += std::int32_t(domain.room[first + x] == DomainWork::kRoomForAll ? requested : granted);
     context.area.last_change[context.area.segmentAt(domain.box.x0 + x, domain.box.y0 + row)] = step;
-    domain.requested[i] = 0;
-    domain.granted[i] = 0;
+    requested = 0;
+    granted = 0;
   }
 }
 
@@ -68,6 +80,8 @@ void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t 
   const int chunk_count = (domain.rows() + kChunkRows - 1) / kChunkRows;
   domain.requested.resize(std::max(domain.requested.size(), domain.overlap.size()));
   domain.granted.resize(domain.requested.size());
+  domain.receives.assign(std::size_t(domain.rows()), 0);
+  domain.room.resize(domain.requested.size());
   const auto forEachRow = [&](auto body) {
     context.pool.forEach(chunk_count, [&](int chunk, int) {
       for (int row = chunk * kChunkRows; row < std::min((chunk + 1) * kChunkRows, domain.rows()); ++row) body(row);
@@ -78,9 +92,14 @@ void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t 
       addToTargets(domain, row, domain.requested, [&](std::size_t i) { return std::int64_t(domain.overlap[i]); });
   });
   forEachRow([&](int row) {
+    if (domain.receives[row] != 0) findRoom(context, domain, row);
+  });
+  forEachRow([&](int row) {
     if (domain.penetrating_in_row[row] > 0) takeFromSources(context, domain, row);
   });
-  forEachRow([&](int row) { giveToTargets(context, domain, row, step); });
+  forEachRow([&](int row) {
+    if (domain.receives[row] != 0) giveToTargets(context, domain, row, step);
+  });
 }
 
 }  // namespace spoor

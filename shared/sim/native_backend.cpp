@@ -42,8 +42,10 @@ class NativeBackend final : public Backend {
       runSubStep(context, sub_step, sweep, effect);
       sweep += sub_step.sweep_count;
     }
-    StageTimer timer(effect.stage_ms, Stage::hash);
-    effect.changes = runHash(context, plan, made_live, state);
+    {
+      StageTimer timer(effect.stage_ms, Stage::hash);
+      effect.changes = runHash(context, plan, made_live, state);
+    }
     return effect;
   }
 
@@ -52,12 +54,12 @@ class NativeBackend final : public Backend {
     const int step = sweep * rules::kMatchingCount;
     {
       StageTimer timer(effect.stage_ms, Stage::depth);
-      covered_before_ = area_.covered;
+      underside_before_ = area_.lowest_underside;
       area_.clearUnderside(context.pack, pool_);
       runDepth(context, sub_step);
       // Where a body was or is, room beneath it may have changed.
-      for (std::size_t i = 0; i < area_.covered.size(); ++i)
-        if ((area_.covered[i] | covered_before_[i]) != 0) area_.last_change[i] = step;
+      for (std::size_t i = 0; i < underside_before_.size(); ++i)
+        if (std::min(area_.lowest_underside[i], underside_before_[i]) < rules::kNoUnderside) area_.last_change[i] = step;
     }
     effect.bytes_moved += effect.active_cells * kClearBytes;
     domains_.resize(std::max(domains_.size(), sub_step.domains.size()));
@@ -91,12 +93,17 @@ class NativeBackend final : public Backend {
   const Kernels* kernels_;
   bool skip_settled_;
   WorkArea area_;
-  std::vector<std::uint8_t> covered_before_;
+  std::vector<std::int32_t> underside_before_;
   std::vector<DomainWork> domains_;
 };
 
 }  // namespace
 
 std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options) { return std::make_unique<NativeBackend>(options); }
+
+Result<std::unique_ptr<Backend>> makeBackend(const std::string& name, const NativeOptions& options) {
+  if (name == "native" || name == "auto") return makeNativeBackend(options);
+  return Error{"backend '" + name + "' is not in this build; it has: auto, native"};
+}
 
 }  // namespace spoor

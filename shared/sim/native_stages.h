@@ -26,16 +26,20 @@ struct DomainWork {
   int penetrating_count = 0;
   std::vector<std::int32_t> nearest_row;    // y of the nearest free cell of the same column, relative to the box
   std::vector<std::int32_t> target;         // index of the nearest free cell in this domain, or kNoTarget
-  std::vector<std::int64_t> requested;      // soil that wants to come to a cell; 0 everywhere between ticks
-  std::vector<std::int64_t> granted;        // what of it was let in where not all fits; 0 likewise
+  std::vector<std::int64_t> requested;      // soil that wants to come to a cell; 0 everywhere between sub-steps
+  std::vector<std::int32_t> room;           // what a cell with requests can take, kRoomForAll where they fit
+  std::vector<std::uint8_t> receives;       // [rows] does the row hold a cell with requests?
+  std::vector<std::int64_t> granted;        // what was let in where not all fits; 0 everywhere between sub-steps
+
+  static constexpr std::int32_t kRoomForAll = INT32_MAX;
 
   int width() const { return box.x1 - box.x0; }
   int rows() const { return box.y1 - box.y0; }
   void reset(const CellBox& new_box, const WorkArea& area);
 };
 
-/// Stage depth: the lowest point of the sub-step's bodies over every cell of their domains, in the area's undersides;
-/// marks covered segments.
+/// Stage depth: the lowest point of the sub-step's bodies over every cell of their domains, in the area's undersides,
+/// with each segment's lowest.
 void runDepth(const NativeContext& context, const SubStep& sub_step);
 
 /// Stage penetration: fills overlap and its counts.

@@ -23,7 +23,19 @@ static_assert(6 * kSweepsAtOnce <= kSize / 2);
 class Relaxation {
  public:
   Relaxation(const NativeContext& context, bool skip_settled)
-      : context_(context), area_(context.area), skip_settled_(skip_settled), progress_(context.area.bands.size() * kSize) {}
+      : context_(context), area_(context.area), skip_settled_(skip_settled), progress_(context.area.bands.size() * kSize),
+        row_change_(progress_.size()) {
+    for (std::size_t row = 0; row < row_change_.size(); ++row) row_change_[row] = lastChangeOfRow(int(row));
+    // No cell rises above the highest of all, so an underside well above that limits nothing.
+    std::vector<std::int32_t> highest(area_.runs.size());
+    context.pool.forEach(int(area_.runs.size()), [&](int i, int) {
+      const Run& run = area_.runs[i];
+      highest[i] = -rules::kHeightLimit;
+      for (int row = 0; row < kSize; ++row)
+        highest[i] = std::max(highest[i], context.kernels.highest(area_.height.data() + run.rowOffset(row), run.width()));
+    });
+    for (const std::int32_t height : highest) highest_ = std::max(highest_, height);
+  }
 
   /// Steps are numbered through the tick; `end` - `first` is at most kSweepsAtOnce sweeps.
   /// Returns the pairs visited.
@@ -80,6 +92,22 @@ class Relaxation {
     return progress_[row] != start;
   }
 
+  /// May an underside limit what this segment's cells take?
+  bool covered(std::size_t segment) const {
+    return std::int64_t(area_.lowest_underside[segment]) <= std::int64_t(highest_) + context_.pack.obstacle_threshold_q;
+  }
+
+  std::int32_t lastChangeOfRow(int row) const {
+    const Band& band = area_.bands[row / kSize];
+    std::int32_t last = 0;
+    for (int i = band.first_run; i < band.first_run + band.run_count; ++i) {
+      const std::int32_t* changes = area_.last_change.data() + segmentOf(area_.runs[i], row, 0);
+      last = std::max(last, context_.kernels.highest(changes, area_.runs[i].tile_count));
+    }
+    return last;
+  }
+
+  bool settledRow(int row, int step) const { return skip_settled_ && row_change_[row] < step - (kSteps - 1); }
   bool settled(std::size_t segment, int step) const { return area_.last_change[segment] < step - (kSteps - 1); }
 
   std::size_t segmentOf(const Run& run, int row, int tile) const {
@@ -89,6 +117,7 @@ class Relaxation {
   /// Horizontal pairs of a row: those whose first cell has the given parity.
   std::int64_t exchangeAlong(int row, int parity, int step) {
     std::int64_t visited = 0;
+    if (settledRow(row, step)) return 0;
     const Band& band = area_.bands[row / kSize];
     for (int i = band.first_run; i < band.first_run + band.run_count; ++i) {
       const Run& run = area_.runs[i];
@@ -99,14 +128,14 @@ class Relaxation {
         if (skip_settled_ && settled(segment, step) && (!reaches_next || settled(segment + 1, step))) continue;
         const int pairs = kSize / 2 - (parity == 1 && !reaches_next ? 1 : 0);
         const std::size_t at = cells + std::size_t(tile * kSize + parity);
-        const bool beneath = area_.covered[segment] != 0 || (reaches_next && area_.covered[segment + 1] != 0);
+        const bool beneath = covered(segment) || (reaches_next && covered(segment + 1));
         const int threshold = context_.pack.slope_threshold_q;
         const bool moved = beneath ? context_.kernels.exchangeWithinBeneath(&area_.height[at], &area_.bedrock[at], &area_.underside[at],
                                                                             pairs, threshold, context_.pack.obstacle_threshold_q)
                                    : context_.kernels.exchangeWithin(&area_.height[at], &area_.bedrock[at], pairs, threshold);
         visited += pairs;
         if (!moved) continue;
-        area_.last_change[segment] = step;
+        row_change_[row] = area_.last_change[segment] = step;
         if (reaches_next) area_.last_change[segment + 1] = step;
       }
     }
@@ -115,6 +144,7 @@ class Relaxation {
 
   /// Vertical and diagonal pairs of two neighbouring rows.
   std::int64_t exchangeAcross(int row_a, int row_b, int matching, int step) {
+    if (settledRow(row_a, step) && settledRow(row_b, step)) return 0;
     const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
     const Band& band_a = area_.bands[row_a / kSize];
     const Band& band_b = area_.bands[row_b / kSize];
@@ -147,21 +177,26 @@ class Relaxation {
     const std::size_t a = run_a.rowOffset(row_a % kSize) + std::size_t(x - run_a.x0());
     const std::size_t b = run_b.rowOffset(row_b % kSize) + std::size_t(x + shift - run_b.x0());
     const int threshold = shift == 0 ? context_.pack.slope_threshold_q : context_.pack.diagonal_threshold_q;
-    const bool beneath = (area_.covered[segment_a] | area_.covered[first_b] | area_.covered[last_b]) != 0;
+    const bool beneath = covered(segment_a) || covered(first_b) || covered(last_b);
     const bool moved =
         beneath ? context_.kernels.exchangeRowsBeneath(&area_.height[a], &area_.height[b], &area_.bedrock[a], &area_.bedrock[b],
                                                        &area_.underside[a], &area_.underside[b], count, threshold,
                                                        context_.pack.obstacle_threshold_q)
                 : context_.kernels.exchangeRows(&area_.height[a], &area_.height[b], &area_.bedrock[a], &area_.bedrock[b], count, threshold);
-    if (moved) area_.last_change[segment_a] = area_.last_change[first_b] = area_.last_change[last_b] = step;
+    if (moved) {
+      area_.last_change[segment_a] = area_.last_change[first_b] = area_.last_change[last_b] = step;
+      row_change_[row_a] = row_change_[row_b] = step;
+    }
     return count;
   }
 
   const NativeContext& context_;
   WorkArea& area_;
   bool skip_settled_;
+  std::int32_t highest_ = -rules::kHeightLimit;
   std::atomic<std::int64_t> visited_ = 0;
-  std::vector<int> progress_;  // [bands * 64] the next step of each row
+  std::vector<int> progress_;             // [bands * 64] the next step of each row
+  std::vector<std::int32_t> row_change_;  // [bands * 64] the latest of last_change in each row
 };
 
 }  // namespace

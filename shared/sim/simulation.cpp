@@ -30,8 +30,10 @@ Result<TickResult> Simulation::step(std::span<const Pose> poses) {
     StageTimer timer(result.effect.stage_ms, Stage::hash);
     result.update.state_hash = stateHash(state_);
   }
-  StageTimer timer(result.effect.stage_ms, Stage::delta);
-  result.update.tiles = encodeTiles(result.effect.changes);
+  {
+    StageTimer timer(result.effect.stage_ms, Stage::delta);
+    result.update.tiles = encodeTiles(result.effect.changes);
+  }
   return result;
 }
 

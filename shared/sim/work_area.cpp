@@ -20,7 +20,7 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
     std::int32_t* underside = area.underside.data() + run.rowOffset(row);
     std::fill(underside + from, underside + run.width(), -rules::kHeightLimit);
     for (int tile = from / kSize; tile < run.tile_count; ++tile)
-      area.covered[run.segment_offset + std::size_t(row * run.tile_count + tile)] = 1;
+      area.lowest_underside[run.segment_offset + std::size_t(row * run.tile_count + tile)] = -rules::kHeightLimit;
   }
 }
 
@@ -41,6 +41,7 @@ std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& bas
     if (bands.empty() || bands.back().tile_y != at.y) bands.push_back({at.y, int(runs.size()), 0});
     if (bands.back().run_count == 0 || runs.back().first.x + runs.back().tile_count != at.x) {
       runs.push_back({at, 0, cells, segments});
+      cells += kSize * Run::kRowPad;
       ++bands.back().run_count;
     }
     ++runs.back().tile_count;
@@ -59,7 +60,7 @@ std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& bas
   height.resize(cells);
   bedrock.resize(cells);
   underside.resize(cells);
-  covered.assign(segments, 0);
+  lowest_underside.resize(segments);
   last_change.assign(segments, 0);
   pool.forEach(count, [&](int i, int) {
     const Run& run = runs[run_of_tile[i]];
@@ -85,8 +86,8 @@ const Run& WorkArea::runAt(std::int32_t x, std::int32_t y) const {
 void WorkArea::clearUnderside(const ScenePack& pack, ThreadPool& pool) {
   pool.forEach(int(runs.size()), [&](int i, int) {
     const Run& run = runs[i];
-    std::fill_n(underside.begin() + std::ptrdiff_t(run.cell_offset), run.width() * kSize, rules::kNoUnderside);
-    std::fill_n(covered.begin() + std::ptrdiff_t(run.segment_offset), run.tile_count * kSize, std::uint8_t(0));
+    std::fill_n(underside.begin() + std::ptrdiff_t(run.cell_offset), run.stride() * kSize, rules::kNoUnderside);
+    std::fill_n(lowest_underside.begin() + std::ptrdiff_t(run.segment_offset), run.tile_count * kSize, rules::kNoUnderside);
     closeBorder(pack, *this, run);
   });
 }

@@ -10,15 +10,19 @@ namespace spoor {
 
 /// Neighbouring active tiles of one row of tiles, their cells laid out row by row so that rows are long.
 struct Run {
+  static constexpr int kRowPad = 16;
+
   TileCoordinate first;
   int tile_count = 0;
   std::size_t cell_offset = 0;     // of its first cell in WorkArea's planes
   std::size_t segment_offset = 0;  // of its first segment in WorkArea's segment arrays
 
   int width() const { return tile_count * rules::kTileSize; }
+  /// Cells from one row to the next. The pad keeps rows of a power of two apart in the caches, and may be read.
+  int stride() const { return width() + kRowPad; }
   int x0() const { return first.x * rules::kTileSize; }
   int x1() const { return x0() + width(); }
-  std::size_t rowOffset(int local_row) const { return cell_offset + std::size_t(local_row) * std::size_t(width()); }
+  std::size_t rowOffset(int local_row) const { return cell_offset + std::size_t(local_row) * std::size_t(stride()); }
 };
 
 /// A row of tiles that has active ones.
@@ -35,7 +39,7 @@ struct WorkArea {
   std::vector<Band> bands;        // in y order
   std::vector<int> run_of_tile;   // [tiles]
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
-  std::vector<std::uint8_t> covered;       // [segments] 1: an underside, or the world's border, lies over it
+  std::vector<std::int32_t> lowest_underside;  // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;   // [segments] step of the relaxation at which it last changed
 
   /// Makes the plan's dormant tiles live, and gathers all active ones. Returns the tiles made live.
@@ -55,6 +59,7 @@ struct WorkArea {
   }
 
   /// Takes all undersides away, but for the world's border, which stays closed.
+  /// `lowest_underside` is then as for no body at all.
   void clearUnderside(const ScenePack& pack, ThreadPool& pool);
 };
 

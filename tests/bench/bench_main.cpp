@@ -18,6 +18,11 @@ struct Settings {
   std::int64_t ticks = 60, threads = 0;
 };
 
+struct Scene {
+  ScenePack pack;
+  PackId id;
+};
+
 struct Series {
   std::string scene, backend;
   std::vector<double> tick_ms;
@@ -36,12 +41,14 @@ double percentile(std::vector<double> values, double share) {
 }
 
 /// Runs a scene's scripted bodies; the first tick is warm-up and not in the figures.
-Series runScene(const ScenePack& pack, const PackId& id, std::int64_t ticks, const NativeOptions& options) {
-  const BaseTerrain base(pack);
+Series runScene(const Settings& settings, const Scene& scene, const NativeOptions& options) {
+  auto backend = makeBackend(settings.backend, options);
+  if (!backend) throw std::runtime_error(backend.error());
+  const BaseTerrain base(scene.pack);
   const Script script(base);
-  Simulation simulation(base, id, makeNativeBackend(options));
-  Series series{pack.name, simulation.backend().name(), {}, {}, {}, 0, 0, 0, 0, 0, 0};
-  for (std::int32_t tick = 1; tick <= ticks; ++tick) {
+  Simulation simulation(base, scene.id, std::move(*backend));
+  Series series{scene.pack.name, simulation.backend().name(), {}, {}, {}, 0, 0, 0, 0, 0, 0};
+  for (std::int32_t tick = 1; tick <= settings.ticks; ++tick) {
     const auto poses = script.poses(tick);
     StageTimes whole{};
     Result<TickResult> result = [&] {
@@ -106,11 +113,6 @@ std::string csvLine(const Series& series) {
   return line + "," + std::to_string(series.last.domain_cells) + "," + hexText(series.hash) + "\n";
 }
 
-struct Scene {
-  ScenePack pack;
-  PackId id;
-};
-
 Scene loadScene(const std::string& name) {
   if (std::ranges::count(benchSceneNames(), name) > 0) {
     Scene scene{makeBenchScene(name), {}};
@@ -133,9 +135,9 @@ bool measureTicks(const Settings& settings, const std::vector<std::string>& name
   for (const std::string& name : names) {
     const Scene scene = loadScene(name);
     std::fprintf(stderr, "measuring %s ...\n", name.c_str());
-    const Series series = runScene(scene.pack, scene.id, settings.ticks, {int(settings.threads), nullptr, true});
+    const Series series = runScene(settings, scene, {int(settings.threads), nullptr, true});
     std::fprintf(stderr, "checking %s against one thread, baseline kernels, every pair visited ...\n", name.c_str());
-    const Series check = runScene(scene.pack, scene.id, settings.ticks, plainest());
+    const Series check = runScene(settings, scene, plainest());
     print(series);
     std::printf("  check: %s takes %.3f ms (%.1f x) and gives %s\n", check.backend.c_str(), percentile(check.tick_ms, 0.5),
                 percentile(check.tick_ms, 0.5) / percentile(series.tick_ms, 0.5), check.hash == series.hash ? "the same hash" : "ANOTHER HASH");
@@ -152,8 +154,8 @@ bool measureWorlds(const Settings& settings, JsonWriter& json, std::string& csv)
   std::vector<double> ratios;
   Series a, b;
   for (int round = 0; round < 7; ++round) {  // in turns, so that a noisy machine disturbs both alike
-    a = runScene(small.pack, small.id, settings.ticks, {int(settings.threads), nullptr, true});
-    b = runScene(wide.pack, wide.id, settings.ticks, {int(settings.threads), nullptr, true});
+    a = runScene(settings, small, {int(settings.threads), nullptr, true});
+    b = runScene(settings, wide, {int(settings.threads), nullptr, true});
     ratios.push_back(percentile(b.tick_ms, 0.5) / percentile(a.tick_ms, 0.5));
   }
   print(a);
@@ -173,7 +175,7 @@ bool measureRelax(const Settings& settings, JsonWriter& json, std::string& csv) 
   std::uint64_t hash = 0;
   for (const Kernels* set : availableKernels())
     for (const bool skip : {false, true}) {
-      const Series series = runScene(scene.pack, scene.id, settings.ticks, {int(settings.threads), set, skip});
+      const Series series = runScene(settings, scene, {int(settings.threads), set, skip});
       const double sweeps_per_s = scene.pack.sweeps_per_tick / (percentile(series.stage_ms[int(Stage::relax)], 0.5) / 1e3);
       std::printf("%-30s %-22s relax %7.3f ms, %6.0f M cell-iterations/s, hash %s\n", series.backend.c_str(),
                   skip ? "settled pairs skipped" : "every pair visited", percentile(series.stage_ms[int(Stage::relax)], 0.5),
@@ -192,17 +194,13 @@ int run(int argc, char** argv) {
   Options options("spoor-bench", "times of the pipeline, checked by hash");
   options.addPlain("tick|relax|world", "a whole tick by stages; sweeps by kernel set; one car in a small and a large world [tick]", &what, 1);
   options.add("scene", "NAME|PACK", "scene of the benchmark, or a pack file; car491 and slab491 where none is named", &settings.scene);
-  options.add("backend", "NAME", "native", &settings.backend);
+  options.add("backend", "NAME", "auto or native", &settings.backend);
   options.add("ticks", "N", "ticks of each run", &settings.ticks, 2, 1000000);
   options.add("threads", "N", "0: one for each processor", &settings.threads, 0, 256);
   options.add("json", "FILE", "also write the figures there", &settings.json);
   options.add("csv", "FILE", "also write medians there, a line for each run", &settings.csv);
   options.parseOrExit(argc, argv);
   const std::string kind = what.empty() ? "tick" : what.front();
-  if (settings.backend != "native") {
-    std::fprintf(stderr, "spoor-bench: --backend: '%s' is not one of: native\n", settings.backend.c_str());
-    return 2;
-  }
   JsonWriter json;
   json.beginObject();
   json.beginArray("runs");
