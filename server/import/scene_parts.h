@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "server/import/importer.h"
+#include "server/import/table_reader.h"
+
+namespace spoor {
+
+/// A scene file on its way to a pack.
+struct SceneDraft {
+  std::filesystem::path directory;  // files are looked up from here
+  ImportedScene scene;
+  std::map<std::string, std::int32_t> meshes;  // index by name
+  std::map<std::string, std::int32_t> paths;
+};
+
+// Each reads one kind of table of the file into the draft; what is wrong goes to the reader's SceneErrors. In this
+// order: meshes need the cell size, paths the size of the world, bodies and vehicles the meshes and paths.
+void readMeshTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
+void readPathTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
+void readBodyTables(TableReader& file, SceneDraft& draft);
+void readVehicleTables(TableReader& file, SceneDraft& draft);
+
+/// A file named in a scene, from the scene's directory.
+std::string filePath(const SceneDraft& draft, const std::string& named);
+
+}  // namespace spoor

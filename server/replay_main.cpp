@@ -1,0 +1,102 @@
+// spoor-replay: what a session file holds, and whether this machine gets the same.
+#include <cstdio>
+
+#include "shared/base/json.h"
+#include "shared/base/options.h"
+#include "shared/codec/session.h"
+#include "shared/sim/simulation.h"
+
+namespace spoor {
+namespace {
+
+int fail(const std::string& why) {
+  std::fprintf(stderr, "spoor-replay: %s\n", why.c_str());
+  return 1;
+}
+
+void printInfo(const SessionReader& reader) {
+  const ScenePack& pack = reader.pack();
+  std::printf("scene %s, pack %s\nworld %d x %d cells of %g m, %zu bodies\n", pack.name.c_str(), toText(reader.id()).c_str(),
+              pack.width_cells, pack.height_cells, pack.cell_q / 1e4, pack.bodies.size());
+}
+
+int info(SessionReader& reader) {
+  printInfo(reader);
+  TickRecord last;
+  for (;;) {
+    auto record = reader.next();
+    if (!record) return fail(record.error());
+    if (!*record) break;
+    last = std::move(**record);
+  }
+  std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick, reader.truncated() ? " (the file ends within the next)" : "",
+              hexText(last.state_hash).c_str(), static_cast<long long>(last.ledger.error()));
+  return 0;
+}
+
+/// One line for each tick, as comma-separated values.
+int exportTicks(SessionReader& reader) {
+  std::printf("tick,state_hash,initial,ground,compacted,craters,events\n");
+  for (;;) {
+    auto record = reader.next();
+    if (!record) return fail(record.error());
+    if (!*record) return 0;
+    const TickRecord& tick = **record;
+    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld\n", tick.tick, hexText(tick.state_hash).c_str(), static_cast<long long>(tick.ledger.initial),
+                static_cast<long long>(tick.ledger.ground), static_cast<long long>(tick.ledger.compacted),
+                static_cast<long long>(tick.ledger.craters), static_cast<long long>(tick.ledger.events));
+  }
+}
+
+int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
+  printInfo(reader);
+  const BaseTerrain base(reader.pack());
+  Simulation simulation(base, reader.id(), std::move(backend));
+  std::printf("backend %s\n", simulation.backend().name().c_str());
+  for (;;) {
+    auto record = reader.next();
+    if (!record) return fail(record.error());
+    if (!*record) break;
+    const TickRecord& tick = **record;
+    auto result = simulation.step(tick.poses);
+    if (!result) return fail("tick " + std::to_string(tick.tick) + ": " + result.error());
+    if (result->update.state_hash != tick.state_hash)
+      return fail("tick " + std::to_string(tick.tick) + ": hash " + hexText(result->update.state_hash) + " here, " +
+                  hexText(tick.state_hash) + " recorded");
+    if (simulation.state().ledger != tick.ledger || tick.ledger.error() != 0)
+      return fail("tick " + std::to_string(tick.tick) + ": the ledger is off by " + std::to_string(simulation.state().ledger.error()) +
+                  " here, by " + std::to_string(tick.ledger.error()) + " in the record");
+    if (tick.tick % 100 == 0) std::fprintf(stderr, "tick %d\n", tick.tick);
+  }
+  std::printf("verified %d ticks%s: every hash and ledger equal, last hash %s\n", simulation.state().tick,
+              reader.truncated() ? " (the file ends within the next)" : "", hexText(stateHash(simulation.state())).c_str());
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  std::string backend_name = "auto";
+  std::int64_t threads = 0;
+  Options options("spoor-replay", "reads a session file: info, verify (run it again), export (one CSV line for each tick)");
+  options.addPlain("info|verify|export FILE", "what to do, with which session file", &arguments, 2);
+  options.add("backend", "NAME", "auto or native", &backend_name);
+  options.add("threads", "N", "of the native backend; 0: one for each processor", &threads, 0, 256);
+  options.parseOrExit(argc, argv);
+  const std::string what = arguments.empty() ? "" : arguments[0];
+  if (arguments.size() < 2 || (what != "info" && what != "verify" && what != "export")) {
+    std::fprintf(stderr, "spoor-replay: give info, verify or export, and a session file (see --help)\n");
+    return 2;
+  }
+  auto reader = SessionReader::open(arguments[1]);
+  if (!reader) return fail(reader.error());
+  if (what == "info") return info(**reader);
+  if (what == "export") return exportTicks(**reader);
+  auto backend = makeBackend(backend_name, {int(threads), nullptr, true});
+  if (!backend) return fail(backend.error());
+  return verify(**reader, std::move(*backend));
+}
+
+}  // namespace
+}  // namespace spoor
+
+int main(int argc, char** argv) { return spoor::run(argc, argv); }

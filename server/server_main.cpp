@@ -1,0 +1,136 @@
+// spoor-server: hosts a session.
+#include <spdlog/async.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "server/report.h"
+#include "server/scene_source.h"
+
+namespace spoor {
+namespace {
+
+struct Settings {
+  SceneSource source;
+  std::string backend = "auto", session, json;
+  std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
+  double rate_hz = 60, wait_s = 60;
+};
+
+void parse(int argc, char** argv, Settings& settings) {
+  Options options("spoor-server", "hosts a session of a scene");
+  addSceneOptions(options, settings.source);
+  options.add("port", "N", "UDP port; 0: one the system picks", &settings.port, 0, 65535);
+  options.add("backend", "NAME", "auto or native", &settings.backend);
+  options.add("threads", "N", "of the native backend; 0: one for each processor", &settings.threads, 0, 256);
+  options.add("ticks", "N", "length of the session; 0: as the scene says", &settings.ticks, 0, 1 << 30);
+  options.add("rate", "HZ", "ticks per second; 0: as fast as they go", &settings.rate_hz, 0.0, 1000.0);
+  options.add("session", "FILE", "record the session there", &settings.session);
+  options.add("seed", "N", "instead of the scene's seed; -1: the scene's", &settings.seed, -1, INT64_MAX);
+  options.add("wait-clients", "N", "begin when so many clients are in sync", &settings.wait_clients, 0, 1000);
+  options.add("wait", "S", "how long to wait for them", &settings.wait_s, 0.0, 86400.0);
+  options.add("json", "FILE", "also write the table's figures there", &settings.json);
+  options.parseOrExit(argc, argv);
+}
+
+/// Logging on a thread of its own that drops its oldest lines rather than hold a tick up.
+void setUpLog() {
+  spdlog::init_thread_pool(1024, 1);
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  spdlog::set_default_logger(std::make_shared<spdlog::async_logger>("spoor-server", sink, spdlog::thread_pool(),
+                                                                    spdlog::async_overflow_policy::overrun_oldest));
+  spdlog::set_pattern("%H:%M:%S.%e %v");
+}
+
+template <typename T>
+T orThrow(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error());
+  return std::move(*result);
+}
+
+LoadedScene loadSeeded(const Settings& settings) {
+  LoadedScene scene = orThrow(loadScene(settings.source));
+  if (settings.seed < 0) return scene;
+  scene.pack.seed = scene.pack.noise.seed = std::uint64_t(settings.seed);
+  scene.encoded = encodePack(scene.pack);
+  scene.id = packId(scene.encoded);
+  return scene;
+}
+
+void awaitClients(const SessionHost& host, const Settings& settings) {
+  if (settings.wait_clients == 0) return;
+  spdlog::info("waiting for {} clients", settings.wait_clients);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(settings.wait_s);
+  while (host.clientsInSync() < settings.wait_clients) {
+    if (std::chrono::steady_clock::now() > end)
+      throw std::runtime_error(fmt::format("{} of {} clients came within {} s", host.clientsInSync(), settings.wait_clients, settings.wait_s));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+int run(int argc, char** argv) {
+  Settings settings;
+  parse(argc, argv, settings);
+  setUpLog();
+  LoadedScene scene = loadSeeded(settings);
+  for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
+  const BaseTerrain base(scene.pack);
+  Simulation simulation(base, scene.id, orThrow(makeBackend(settings.backend, {int(settings.threads), nullptr, true})));
+  spdlog::info("scene {}, {} x {} cells of {} m, pack {}", scene.pack.name, scene.pack.width_cells, scene.pack.height_cells,
+               scene.pack.cell_q / 1e4, toText(scene.id));
+  spdlog::info("backend {}", simulation.backend().name());
+  std::unique_ptr<SessionWriter> writer;
+  if (!settings.session.empty()) writer = orThrow(SessionWriter::create(settings.session, scene.encoded));
+  HostOptions host_options;
+  host_options.port = std::uint16_t(settings.port);
+  const auto host = orThrow(SessionHost::open(host_options, scene.pack, scene.encoded));
+  spdlog::info("port {}", host->port());
+
+  awaitClients(*host, settings);
+  LoopOptions loop;
+  loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
+  loop.rate_hz = settings.rate_hz;
+  SessionReport report;
+  report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), [](const std::string& line) { spdlog::info(line); });
+  report.clients = host->finish(30);
+  report.scene = scene.pack.name;
+  report.pack_id = toText(scene.id);
+  report.backend = simulation.backend().name();
+  report.renderer = "none (native)";
+  report.ticks = simulation.state().tick;
+  report.ledger = simulation.state().ledger;
+  report.server_hash = stateHash(simulation.state());
+  report.live_tiles = simulation.state().tiles.size();
+  report.store_bytes = simulation.state().tiles.memoryBytes();
+  spdlog::shutdown();
+  std::printf("%s", tableOf(report).c_str());
+  std::fflush(stdout);
+
+  std::vector<std::string> faults = faultsOf(report, int(settings.wait_clients));
+  if (report.ticks < loop.ticks) faults.push_back("the session ended early");
+  if (!recount(simulation.state())) faults.push_back("a recount from the heights gives other sums");
+  if (writer != nullptr)
+    if (Status status = writer->close(); !status) faults.push_back(status.error());
+  if (!settings.json.empty())
+    if (Status status = jsonOf(report).writeFile(settings.json); !status) faults.push_back(status.error());
+  for (const std::string& fault : faults) std::fprintf(stderr, "spoor-server: %s\n", fault.c_str());
+  return faults.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace spoor
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return spoor::run(argc, argv);
+  } catch (const std::exception& error) {
+    spdlog::shutdown();
+    std::fprintf(stderr, "spoor-server: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,91 @@
+#include "server/tick_loop.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "shared/base/json.h"
+#include "shared/world/script.h"
+
+namespace spoor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Sleeps until a tick's time. A session that fell behind starts counting anew instead of hurrying after.
+class Pace {
+ public:
+  explicit Pace(double rate_hz) : period_(rate_hz > 0 ? 1 / rate_hz : 0), next_(Clock::now()) {}
+
+  /// Returns whether the tick is late.
+  bool await() {
+    if (period_ == std::chrono::duration<double>::zero()) return false;
+    const auto now = Clock::now();
+    const bool late = now > next_ + std::chrono::duration_cast<Clock::duration>(period_);
+    if (late) next_ = now;
+    std::this_thread::sleep_until(next_);
+    next_ += std::chrono::duration_cast<Clock::duration>(period_);
+    return late;
+  }
+
+ private:
+  std::chrono::duration<double> period_;
+  Clock::time_point next_;
+};
+
+void note(LoopFigures& figures, const TickResult& result, const WorldState& state, double tick_ms) {
+  figures.tick_ms.push_back(tick_ms);
+  for (int stage = 0; stage < kStageCount; ++stage) figures.stage_ms[stage].push_back(result.effect.stage_ms[stage]);
+  figures.active_cells.push_back(result.effect.active_cells);
+  figures.too_fast_ticks += result.too_fast ? 1 : 0;
+  figures.unbalanced_ticks += state.ledger.error() != 0 ? 1 : 0;
+}
+
+}  // namespace
+
+LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const LoopOptions& options, SessionHost* host,
+                     SessionWriter* writer, const std::function<void(const std::string&)>& say) {
+  const Script script(base);
+  LoopFigures figures;
+  Pace pace(options.rate_hz);
+  const auto start = Clock::now();
+  auto said = start;
+  for (std::int32_t tick = 1; tick <= options.ticks; ++tick) {
+    figures.late_ticks += pace.await() ? 1 : 0;
+    const auto tick_start = Clock::now();
+    StageTimes outer{};
+    std::vector<Pose> poses;
+    {
+      StageTimer timer(outer, Stage::commands);
+      poses = script.poses(tick);
+    }
+    auto result = simulation.step(poses);
+    if (!result) {  // the pack's own script left the range: the session ends here, what is done stays done
+      say(fmt::format("tick {}: {}", tick, result.error()));
+      break;
+    }
+    const double tick_ms = millisecondsSince(tick_start);
+    result->effect.stage_ms[int(Stage::commands)] = outer[int(Stage::commands)];
+    const std::uint64_t hash = result->update.state_hash;
+    const std::int64_t active_cells = result->effect.active_cells;
+    const auto publish_start = Clock::now();
+    if (writer != nullptr) writer->append({tick, std::move(poses), hash, simulation.state().ledger});
+    if (host != nullptr) host->publish(std::move(result->update));
+    result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
+    note(figures, *result, simulation.state(), tick_ms);
+    if (Clock::now() - said > std::chrono::seconds(1) || tick == options.ticks) {
+      said = Clock::now();
+      say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, hash {}", tick, options.ticks, tick_ms,
+                      active_cells, simulation.state().tiles.size(), hexText(hash)));
+    }
+  }
+  figures.wall_s = millisecondsSince(start) / 1e3;
+  return figures;
+}
+
+}  // namespace spoor
