@@ -152,8 +152,8 @@ void ClientBook::onSnapshotRequest(PeerId peer, Client& client, const SnapshotRe
     // A differing hash has been counted with its confirmation.
     if (request.cause != SnapshotCause::hash_mismatch) ++report.mismatches;
     report.in_sync = false;
-    spdlog::warn("client '{}' asks for a new snapshot at tick {} (cause {})", report.name, mirror_.tick(),
-                 int(request.cause));
+    spdlog::warn("client '{}' asks for a new snapshot at tick {}, for {}", report.name, mirror_.tick(),
+                 toText(request.cause));
   }
   client.stage = Stage::following;
   client.sending = *package;

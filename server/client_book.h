@@ -22,7 +22,8 @@ struct BookOptions {
 };
 
 /// All clients of a session and what to do about each message of theirs (PROTOCOL.md, the server's states). Knows
-/// neither threads nor sockets nor clocks. A client that talks nonsense is let go with a reason; the others never notice.
+/// neither threads nor sockets nor clocks. A client that talks nonsense is let go with a reason; the others never
+/// notice.
 class ClientBook {
  public:
   /// `transport` and `pack` must outlive the book.

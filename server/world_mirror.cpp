@@ -26,7 +26,9 @@ Result<const BulkPackage*> WorldMirror::snapshot() {
   if (broken_) return Error{"the server cannot make snapshots: " + *broken_};
   if (const auto found = snapshots_.find(last_tick_); found != snapshots_.end()) return &std::as_const(found->second);
   auto raw = encodeSnapshot(state_, base_);
-  if (raw.size() > kSnapshotBytesLimit) return Error{"the state is too large to send: " + std::to_string(raw.size()) + " bytes"};
+  if (raw.size() > kSnapshotBytesLimit) {
+    return Error{"the state is too large to send: " + std::to_string(raw.size()) + " bytes"};
+  }
   const auto made = snapshots_.emplace(last_tick_, makeBulkPackage(BulkKind::snapshot, std::move(raw))).first;
   return &std::as_const(made->second);
 }

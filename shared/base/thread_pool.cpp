@@ -33,12 +33,13 @@ ThreadPool::~ThreadPool() {
 void ThreadPool::run(int count, void* context) {
   context_ = context;
   count_ = count;
-  next_index_.store(0, std::memory_order_relaxed);
-  working_.store(int(threads_.size()), std::memory_order_relaxed);
-  generation_.fetch_add(1, std::memory_order_release);
+  unfinished_.store(count, std::memory_order_relaxed);
+  const std::uint32_t generation = generation_.load(std::memory_order_relaxed) + 1;
+  ticket_.store(std::uint64_t(generation) << 32 | std::uint32_t(count), std::memory_order_release);
+  generation_.store(generation, std::memory_order_release);
   generation_.notify_all();
   work(0);
-  for (int left = working_.load(std::memory_order_acquire); left > 0;) left = waitForChange(working_, left);
+  for (int left = unfinished_.load(std::memory_order_acquire); left > 0;) left = waitForChange(unfinished_, left);
 }
 
 void ThreadPool::serve(int thread) {
@@ -47,15 +48,16 @@ void ThreadPool::serve(int thread) {
     seen = waitForChange(generation_, seen);
     if (stop_) return;
     work(thread);
-    if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) working_.notify_one();
   }
 }
 
 void ThreadPool::work(int thread) {
-  for (;;) {
-    const int index = next_index_.fetch_add(1, std::memory_order_relaxed);
-    if (index >= count_) return;
-    call_(context_, index, thread);
+  std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
+  while (std::uint32_t(ticket) > 0) {
+    if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel, std::memory_order_acquire)) continue;
+    call_(context_, count_ - int(std::uint32_t(ticket)), thread);
+    if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_one();
+    ticket = ticket_.load(std::memory_order_acquire);
   }
 }
 

@@ -36,12 +36,15 @@ class ThreadPool {
   void serve(int thread);
   void work(int thread);
 
+  // A loop ends when its indices are done, not when every thread has noticed it: on a busy machine a thread may sleep
+  // through a loop and nobody waits for it. It reads the loop's fields only after it has claimed an index, which keeps
+  // the loop alive until that index is done.
   std::vector<std::thread> threads_;
   void (*call_)(void*, int, int) = nullptr;
   void* context_ = nullptr;
   int count_ = 0;
-  std::atomic<int> next_index_{0};
-  std::atomic<int> working_{0};             // threads that have not finished this loop
+  std::atomic<std::uint64_t> ticket_{0};      // high half: number of the loop; low half: indices not yet claimed
+  std::atomic<int> unfinished_{0};            // indices of this loop not yet done
   std::atomic<std::uint32_t> generation_{0};  // one up for each loop
   std::atomic<bool> stop_{false};
 };

@@ -1,74 +1,70 @@
 // Stage depth: integer rasterisation of undersides.
+//
+// Only the lowest surface over a cell counts, and a minimum does not mind the order: low primitives are drawn first, and
+// one that lies above everything already drawn where it could fall is left out. On a closed mesh that is most of them.
 #include <algorithm>
+#include <numeric>
 
 #include "shared/sim/native_stages.h"
 
 namespace spoor {
 namespace {
 
-constexpr int kLeastChunkRows = 16;
-
-/// A body's triangles and edges, set up once per sub-step.
-struct BodyRaster {
-  const PlacedBody* body;
-  std::vector<rules::RasterTriangle> triangles;
-  std::vector<rules::RasterEdge> edges;
-};
-
-BodyRaster setUp(const ScenePack& pack, const PlacedBody& body) {
-  const Mesh& mesh = pack.meshes[std::size_t(pack.bodies[std::size_t(body.body_index)].mesh_index)];
-  BodyRaster raster{&body, {}, {}};
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const auto triangle = rules::rasterTriangle(body.points[a], body.points[b], body.points[c]);
-    if (!rules::wideZero(triangle.area)) raster.triangles.push_back(triangle);
-  }
-  for (const auto& [a, b] : mesh.edges) raster.edges.push_back(rules::rasterEdge(body.points[a], body.points[b]));
-  return raster;
-}
-
 std::int32_t absoluteHeight(std::int64_t z) {
   return std::int32_t(std::clamp<std::int64_t>(z, -rules::kHeightLimit, rules::kNoUnderside));
 }
 
-/// The underside rows of one domain; the caller of the per-primitive functions clips to rows [y0, y1).
+/// A body's triangles, then its edges, in rough order of their lowest points.
+struct DrawOrder {
+  const PlacedBody* body;
+  const Mesh* mesh;
+  std::vector<std::uint32_t> primitives;  // below triangles.size(): a triangle; from there on: an edge
+};
+
+DrawOrder orderOf(const ScenePack& pack, const PlacedBody& body) {
+  constexpr int kBuckets = 32;
+  DrawOrder order{&body, &pack.meshes[std::size_t(pack.bodies[std::size_t(body.body_index)].mesh_index)], {}};
+  const auto& points = body.points;
+  const auto [low, high] = std::ranges::minmax(points, {}, &rules::RasterPoint::z);
+  const std::size_t triangle_count = order.mesh->triangles.size();
+  const std::size_t count = triangle_count + order.mesh->edges.size();
+  std::vector<std::uint8_t> bucket_of(count);
+  std::array<std::uint32_t, kBuckets + 1> start{};
+  for (std::size_t i = 0; i < count; ++i) {
+    int z;
+    if (i < triangle_count) {
+      const auto& [a, b, c] = order.mesh->triangles[i];
+      z = std::min({points[a].z, points[b].z, points[c].z});
+    } else {
+      const auto& [a, b] = order.mesh->edges[i - triangle_count];
+      z = std::min(points[a].z, points[b].z);
+    }
+    bucket_of[i] = std::uint8_t(std::int64_t(z - low.z) * kBuckets / (std::int64_t(high.z) - low.z + 1));
+    ++start[bucket_of[i] + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  order.primitives.resize(count);
+  for (std::size_t i = 0; i < count; ++i) order.primitives[start[bucket_of[i]]++] = std::uint32_t(i);
+  return order;
+}
+
+/// Some rows of one domain's undersides.
 class RowTarget {
  public:
-  RowTarget(const NativeContext& context, const CellBox& box) : context_(context), box_(box) {}
+  /// `row_offset`: of the box's rows in the area's planes.
+  RowTarget(const NativeContext& context, const CellBox& box, const std::size_t* row_offset)
+      : context_(context), box_(box), row_offset_(row_offset) {}
 
-  void drawTriangle(const rules::RasterTriangle& t, const PlacedBody& body) {
-    const int low = std::min({t.a.y, t.b.y, t.c.y}), high = std::max({t.a.y, t.b.y, t.c.y});
-    const int first = std::max(rules::floorDiv(low, rules::kSubcells), box_.y0 - body.origin_y);
-    const int last = std::min(rules::floorDiv(high, rules::kSubcells), box_.y1 - 1 - body.origin_y);
-    // Clipped to the body, not to the domain: heights along a row are counted from where its span begins.
-    const rules::RasterSpan whole = {body.box.x0 - body.origin_x, body.box.x1 - body.origin_x};
-    for (int row = first; row <= last; ++row) {
-      const rules::RasterSpan span = rules::triangleSpan(t, row, whole);
-      if (span.end <= span.begin) continue;
-      const int start = rules::triangleHeight(t, span.begin, row);
-      context_.kernels.lowerAlong(cellsAt(span.begin + body.origin_x, row + body.origin_y), span.end - span.begin,
-                                  absoluteHeight(std::int64_t(body.z_q) + start), t.step, t.step_fraction,
-                                  absoluteHeight(std::int64_t(body.z_q) + t.lowest),
-                                  absoluteHeight(std::int64_t(body.z_q) + t.highest));
-    }
-  }
-
-  void drawEdge(const rules::RasterEdge& e, const PlacedBody& body) {
-    const bool along_y = e.along_y != 0;
-    const int u_origin = along_y ? body.origin_y : body.origin_x;
-    const int first = std::max(rules::floorDiv(e.u0, rules::kSubcells), (along_y ? box_.y0 : box_.x0) - u_origin);
-    const int last = std::min(rules::floorDiv(e.u1, rules::kSubcells), (along_y ? box_.y1 : box_.x1) - 1 - u_origin);
-    const int v_origin = along_y ? body.origin_x : body.origin_y;
-    if (rules::floorDiv(std::max(e.v0, e.v1), rules::kSubcells) < (along_y ? box_.x0 : box_.y0) - v_origin ||
-        rules::floorDiv(std::min(e.v0, e.v1), rules::kSubcells) >= (along_y ? box_.x1 : box_.y1) - v_origin)
-      return;
-    for (int column = first; column <= last; ++column) {
-      const rules::EdgeColumn cells = rules::edgeColumn(e, column);
-      for (int v = cells.first; v <= cells.last; ++v) {
-        const int x = (along_y ? v : column) + body.origin_x;
-        const int y = (along_y ? column : v) + body.origin_y;
-        if (x < box_.x0 || x >= box_.x1 || y < box_.y0 || y >= box_.y1) continue;
-        std::int32_t& underside = *cellsAt(x, y);
-        underside = std::min(underside, absoluteHeight(std::int64_t(body.z_q) + cells.height));
+  void draw(const DrawOrder& order) {
+    const PlacedBody& body = *order.body;
+    const std::size_t triangle_count = order.mesh->triangles.size();
+    for (const std::uint32_t primitive : order.primitives) {
+      if (primitive < triangle_count) {
+        const auto& [a, b, c] = order.mesh->triangles[primitive];
+        drawTriangle(body.points[a], body.points[b], body.points[c], body);
+      } else {
+        const auto& [a, b] = order.mesh->edges[primitive - triangle_count];
+        drawEdge(body.points[a], body.points[b], body);
       }
     }
   }
@@ -79,38 +75,111 @@ class RowTarget {
       for (int x = box_.x0; x < box_.x1;) {
         const int end = std::min((x / rules::kTileSize + 1) * rules::kTileSize, box_.x1);
         std::int32_t& lowest = context_.area.lowest_underside[context_.area.segmentAt(x, y)];
-        lowest = std::min(lowest, context_.kernels.lowest(cellsAt(x, y), end - x));
+        lowest = std::min(lowest, context_.kernels.lowest(cellAt(x, y), end - x));
         x = end;
       }
   }
 
  private:
-  std::int32_t* cellsAt(int x, int y) { return context_.area.underside.data() + context_.area.offsetAt(x, y); }
+  std::int32_t* cellAt(int x, int y) {
+    return context_.area.underside.data() + row_offset_[y - box_.y0] + std::size_t(x - box_.x0);
+  }
+
+  /// The cells that points can cover, within these rows.
+  CellBox cellsOf(const PlacedBody& body, int low_x, int low_y, int high_x, int high_y) const {
+    return {std::max(rules::floorDiv(low_x, rules::kSubcells) + body.origin_x, box_.x0),
+            std::max(rules::floorDiv(low_y, rules::kSubcells) + body.origin_y, box_.y0),
+            std::min(rules::floorDiv(high_x, rules::kSubcells) + body.origin_x + 1, box_.x1),
+            std::min(rules::floorDiv(high_y, rules::kSubcells) + body.origin_y + 1, box_.y1)};
+  }
+
+  /// True where something at this height or above can change nothing. Looks only at boxes small enough to be worth it.
+  bool hidden(const CellBox& cells, std::int32_t height) {
+    constexpr int kWorthwhile = 64;
+    if ((cells.x1 - cells.x0) * (cells.y1 - cells.y0) > kWorthwhile) return false;
+    for (int y = cells.y0; y < cells.y1; ++y) {
+      const std::int32_t* row = cellAt(cells.x0, y);
+      for (int i = 0; i < cells.x1 - cells.x0; ++i)
+        if (row[i] > height) return false;
+    }
+    return true;
+  }
+
+  void drawTriangle(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, const PlacedBody& body) {
+    const CellBox cells = cellsOf(body, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}),
+                                  std::max({a.y, b.y, c.y}));
+    const std::int32_t lowest = absoluteHeight(std::int64_t(body.z_q) + std::min({a.z, b.z, c.z}));
+    if (cells.empty() || hidden(cells, lowest)) return;
+    const rules::RasterTriangle t = rules::rasterTriangle(a, b, c);
+    if (rules::wideZero(t.area)) return;
+    const std::int32_t highest = absoluteHeight(std::int64_t(body.z_q) + t.highest);
+    // Clipped to the body, not to the domain: heights along a row are counted from where its span begins.
+    const rules::RasterSpan whole = {body.box.x0 - body.origin_x, body.box.x1 - body.origin_x};
+    for (int y = cells.y0; y < cells.y1; ++y) {
+      const rules::RasterSpan span = rules::triangleSpan(t, y - body.origin_y, whole);
+      if (span.end <= span.begin) continue;
+      const int start = rules::triangleHeight(t, span.begin, y - body.origin_y);
+      context_.kernels.lowerAlong(cellAt(span.begin + body.origin_x, y), span.end - span.begin,
+                                  absoluteHeight(std::int64_t(body.z_q) + start), t.step, t.step_fraction, lowest, highest);
+    }
+  }
+
+  void drawEdge(const rules::RasterPoint& a, const rules::RasterPoint& b, const PlacedBody& body) {
+    const CellBox cells = cellsOf(body, std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y));
+    if (cells.empty() || hidden(cells, absoluteHeight(std::int64_t(body.z_q) + std::min(a.z, b.z)))) return;
+    const rules::RasterEdge e = rules::rasterEdge(a, b);
+    const bool along_y = e.along_y != 0;
+    const int u_origin = along_y ? body.origin_y : body.origin_x;
+    const int v_origin = along_y ? body.origin_x : body.origin_y;
+    for (int u = along_y ? cells.y0 : cells.x0; u < (along_y ? cells.y1 : cells.x1); ++u) {
+      const rules::EdgeColumn column = rules::edgeColumn(e, u - u_origin);
+      const std::int32_t height = absoluteHeight(std::int64_t(body.z_q) + column.height);
+      const int first = std::max(column.first + v_origin, along_y ? box_.x0 : box_.y0);
+      const int last = std::min(column.last + v_origin, (along_y ? box_.x1 : box_.y1) - 1);
+      for (int v = first; v <= last; ++v) {
+        std::int32_t& underside = *(along_y ? cellAt(v, u) : cellAt(u, v));
+        underside = std::min(underside, height);
+      }
+    }
+  }
 
   const NativeContext& context_;
   CellBox box_;
+  const std::size_t* row_offset_;
 };
+
+struct Chunk {
+  const Domain* domain;
+  CellBox box;
+};
+
+/// Every chunk looks at every primitive of its domain: as few chunks as still share the work out.
+std::vector<Chunk> chunksOf(const SubStep& sub_step, int thread_count) {
+  constexpr int kLeastRows = 16;
+  std::vector<Chunk> chunks;
+  for (const Domain& domain : sub_step.domains) {
+    const int rows = domain.box.y1 - domain.box.y0;
+    const int chunk_rows = thread_count == 1 ? rows : std::max(kLeastRows, rows / (2 * thread_count) + 1);
+    for (int y = domain.box.y0; y < domain.box.y1; y += chunk_rows)
+      chunks.push_back({&domain, {domain.box.x0, y, domain.box.x1, std::min(y + chunk_rows, domain.box.y1)}});
+  }
+  return chunks;
+}
 
 }  // namespace
 
 void runDepth(const NativeContext& context, const SubStep& sub_step) {
-  std::vector<BodyRaster> rasters(sub_step.bodies.size());
-  context.pool.forEach(int(rasters.size()), [&](int i, int) { rasters[i] = setUp(context.pack, sub_step.bodies[i]); });
-  for (const Domain& domain : sub_step.domains) {
-    // Every chunk looks at every primitive: as few chunks as still share the work out evenly.
-    const int rows = domain.box.y1 - domain.box.y0;
-    const int chunk_rows = std::max(kLeastChunkRows, rows / (4 * context.pool.threadCount()) + 1);
-    const int chunk_count = (rows + chunk_rows - 1) / chunk_rows;
-    context.pool.forEach(chunk_count, [&](int chunk, int) {
-      const int y0 = domain.box.y0 + chunk * chunk_rows;
-      RowTarget target(context, {domain.box.x0, y0, domain.box.x1, std::min(y0 + chunk_rows, domain.box.y1)});
-      for (const int body : domain.bodies) {
-        for (const auto& triangle : rasters[body].triangles) target.drawTriangle(triangle, *rasters[body].body);
-        for (const auto& edge : rasters[body].edges) target.drawEdge(edge, *rasters[body].body);
-      }
-      target.noteLowest();
-    });
-  }
+  std::vector<DrawOrder> orders(sub_step.bodies.size());
+  context.pool.forEach(int(orders.size()), [&](int i, int) { orders[i] = orderOf(context.pack, sub_step.bodies[i]); });
+  const std::vector<Chunk> chunks = chunksOf(sub_step, context.pool.threadCount());
+  context.pool.forEach(int(chunks.size()), [&](int i, int) {
+    const CellBox& box = chunks[i].box;
+    std::vector<std::size_t> row_offset;
+    for (int y = box.y0; y < box.y1; ++y) row_offset.push_back(context.area.offsetAt(box.x0, y));
+    RowTarget target(context, box, row_offset.data());
+    for (const int body : chunks[i].domain->bodies) target.draw(orders[body]);
+    target.noteLowest();
+  });
 }
 
 }  // namespace spoor

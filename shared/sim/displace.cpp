@@ -76,15 +76,14 @@ void giveToTargets(const NativeContext& context, DomainWork& domain, int row, st
 }  // namespace
 
 void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step) {
-  constexpr int kChunkRows = 16;
-  const int chunk_count = (domain.rows() + kChunkRows - 1) / kChunkRows;
+  const int task_rows = rowsPerTask(domain.width());
   domain.requested.resize(std::max(domain.requested.size(), domain.overlap.size()));
   domain.granted.resize(domain.requested.size());
   domain.receives.assign(std::size_t(domain.rows()), 0);
   domain.room.resize(domain.requested.size());
   const auto forEachRow = [&](auto body) {
-    context.pool.forEach(chunk_count, [&](int chunk, int) {
-      for (int row = chunk * kChunkRows; row < std::min((chunk + 1) * kChunkRows, domain.rows()); ++row) body(row);
+    context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int) {
+      for (int row = task * task_rows; row < std::min((task + 1) * task_rows, domain.rows()); ++row) body(row);
     });
   };
   forEachRow([&](int row) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct DomainWork {
   int rows() const { return box.y1 - box.y0; }
   void reset(const CellBox& new_box, const WorkArea& area);
 };
+
+/// Rows (or columns) of `length` cells per task: few enough tasks that handing them out costs nothing beside them.
+inline int rowsPerTask(int length) {
+  constexpr int kCellsPerTask = 1 << 14;
+  return std::max(1, kCellsPerTask / std::max(length, 1));
+}
 
 /// Stage depth: the lowest point of the sub-step's bodies over every cell of their domains, in the area's undersides,
 /// with each segment's lowest.

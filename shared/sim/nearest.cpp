@@ -9,21 +9,20 @@ namespace {
 
 /// For every cell the nearest free row of its own column.
 void searchColumns(const NativeContext& context, DomainWork& domain) {
-  constexpr int kChunkColumns = 64;
   const int width = domain.width(), rows = domain.rows();
-  context.pool.forEach((width + kChunkColumns - 1) / kChunkColumns, [&](int chunk, int) {
-    const int x = chunk * kChunkColumns;
-    const int count = std::min(kChunkColumns, width - x);
-    std::int32_t last_free[kChunkColumns];
-    std::fill_n(last_free, kChunkColumns, kNoFreeRow);
+  const int task_columns = std::max(rules::kTileSize, rowsPerTask(rows));
+  context.pool.forEach((width + task_columns - 1) / task_columns, [&](int task, int) {
+    const int x = task * task_columns;
+    const int count = std::min(task_columns, width - x);
+    std::vector<std::int32_t> last_free(std::size_t(count), kNoFreeRow);
     for (int y = 0; y < rows; ++y) {
       const std::size_t at = std::size_t(y) * width + x;
-      context.kernels.carryFree(domain.overlap.data() + at, count, y, last_free, domain.nearest_row.data() + at);
+      context.kernels.carryFree(domain.overlap.data() + at, count, y, last_free.data(), domain.nearest_row.data() + at);
     }
-    std::fill_n(last_free, kChunkColumns, kNoFreeRow);
+    std::ranges::fill(last_free, kNoFreeRow);
     for (int y = rows - 1; y >= 0; --y) {
       const std::size_t at = std::size_t(y) * width + x;
-      context.kernels.mergeFree(domain.overlap.data() + at, count, y, last_free, domain.nearest_row.data() + at);
+      context.kernels.mergeFree(domain.overlap.data() + at, count, y, last_free.data(), domain.nearest_row.data() + at);
     }
   });
 }
@@ -88,9 +87,11 @@ void runNearest(const NativeContext& context, DomainWork& domain) {
   domain.target.resize(cells);
   searchColumns(context, domain);
   std::vector<RowEnvelope> envelopes(std::size_t(context.pool.threadCount()));
-  context.pool.forEach(domain.rows(), [&](int y, int thread) {
-    if (domain.penetrating_in_row[y] > 0)
-      envelopes[thread].search(domain, y, domain.target.data() + std::size_t(y) * domain.width());
+  const int task_rows = std::max(1, rowsPerTask(domain.width()) / 4);  // a row costs more here than elsewhere
+  context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int thread) {
+    for (int y = task * task_rows; y < std::min((task + 1) * task_rows, domain.rows()); ++y)
+      if (domain.penetrating_in_row[y] > 0)
+        envelopes[thread].search(domain, y, domain.target.data() + std::size_t(y) * domain.width());
   });
 }
 

@@ -16,10 +16,9 @@ void DomainWork::reset(const CellBox& new_box, const WorkArea& area) {
 }
 
 void runPenetration(const NativeContext& context, DomainWork& domain) {
-  constexpr int kChunkRows = 32;
-  const int chunk_count = (domain.rows() + kChunkRows - 1) / kChunkRows;
-  context.pool.forEach(chunk_count, [&](int chunk, int) {
-    for (int row = chunk * kChunkRows; row < std::min((chunk + 1) * kChunkRows, domain.rows()); ++row) {
+  const int task_rows = rowsPerTask(domain.width());
+  context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int) {
+    for (int row = task * task_rows; row < std::min((task + 1) * task_rows, domain.rows()); ++row) {
       const std::size_t from = domain.row_offset[row];
       domain.penetrating_in_row[row] = context.kernels.overlap(
           context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,

@@ -1,0 +1,132 @@
+// spoor-client: joins a session, follows it, checks it, and shows it in a window or as pictures.
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "client/gl_context.h"
+#include "client/headless_run.h"
+#include "client/session.h"
+#include "client/window_run.h"
+#include "shared/base/json.h"
+#include "shared/base/options.h"
+
+namespace spoor {
+
+namespace {
+
+constexpr int kSideLimit_px = 16384;
+
+struct Arguments {
+  std::string connect;
+  bool headless = false;
+  std::int64_t frame_count = 0;
+  std::string size = "1280x720";
+  std::string folder = ".";
+  std::string name = "viewer";
+  std::string ground = "snow";
+};
+
+std::optional<int> numberIn(std::string_view text, int lowest, int highest) {
+  int value = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size() || value < lowest || value > highest) return std::nullopt;
+  return value;
+}
+
+Result<ConnectOptions> connectOptions(const Arguments& arguments) {
+  const auto colon = arguments.connect.rfind(':');
+  const auto port = colon == std::string::npos ? std::nullopt : numberIn(std::string_view(arguments.connect).substr(colon + 1), 1, 65535);
+  if (!port || colon == 0) return Error{fmt::format("--connect \"{}\": want HOST:PORT with a port of 1 .. 65535", arguments.connect)};
+  ConnectOptions options;
+  options.host = arguments.connect.substr(0, colon);
+  options.port = std::uint16_t(*port);
+  options.name = arguments.name;
+  return options;
+}
+
+Result<RenderSettings> renderSettings(const Arguments& arguments) {
+  RenderSettings settings;
+  const std::string_view size = arguments.size;
+  const auto cross = size.find('x');
+  const auto width = cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(0, cross), 1, kSideLimit_px);
+  const auto height = cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(cross + 1), 1, kSideLimit_px);
+  if (!width || !height) return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
+  settings.width_px = *width;
+  settings.height_px = *height;
+  if (arguments.ground != "snow" && arguments.ground != "sand")
+    return Error{fmt::format("--ground \"{}\": want snow or sand", arguments.ground)};
+  settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::snow;
+  return settings;
+}
+
+/// Follows the session in the way asked for.
+Status follow(const Arguments& arguments, const ConnectOptions& connect, const RenderSettings& settings) {
+  // The context first: whoever cannot draw should not join.
+  std::unique_ptr<GlContext> headless;
+  std::unique_ptr<WindowContext> window;
+  if (arguments.headless) {
+    auto opened = openHeadlessContext();
+    if (!opened) return Error{opened.error()};
+    headless = std::move(*opened);
+  } else {
+    auto opened = openWindowContext(settings.width_px, settings.height_px, "Spoor");
+    if (!opened) return Error{opened.error()};
+    window = std::move(*opened);
+  }
+  const GlContext& context = headless ? *headless : *window;
+  fmt::print("renderer {} ({})\n", context.renderer(), context.path());
+  std::fflush(stdout);
+
+  auto session = ClientSession::start(connect);
+  if (!session) return Error{session.error()};
+  const Status done = arguments.headless
+                          ? runHeadless(**session, {int(arguments.frame_count), arguments.folder, settings})
+                          : runInWindow(**session, *window, settings);
+  if ((*session)->inSync()) {
+    const WorldState& state = (*session)->state();
+    fmt::print("tick {}\nmismatches {}\nhash {}\n", state.tick, (*session)->mismatchCount(), hexText(stateHash(state)));
+  }
+  return done;
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  Options options("spoor-client", "Joins a session and shows it in a window, or as pictures with --headless.");
+  options.add("connect", "HOST:PORT", "the server", &arguments.connect);
+  options.addFlag("headless", "no window: follow to the end, then write pictures", &arguments.headless);
+  options.add("frames", "count", "pictures spread over the session, with --headless", &arguments.frame_count, 0, 100000);
+  options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
+  options.add("out", "DIR", "where pictures go", &arguments.folder);
+  options.add("name", "NAME", "what the server calls this client", &arguments.name);
+  options.add("ground", "snow|sand", "what the ground looks like", &arguments.ground);
+  options.parseOrExit(argc, argv);
+
+  const auto connect = connectOptions(arguments);
+  const auto settings = renderSettings(arguments);
+  if (!connect || !settings) {
+    fmt::print(stderr, "spoor-client: {}\n", connect ? settings.error() : connect.error());
+    return 2;
+  }
+  if (const Status done = follow(arguments, *connect, *settings); !done) {
+    fmt::print(stderr, "spoor-client: {}\n", done.error());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace spoor
+
+int main(int argc, char** argv) {
+  try {
+    return spoor::run(argc, argv);
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "spoor-client: {}\n", problem.what());
+    return 1;
+  }
+}

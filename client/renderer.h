@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "client/body_renderer.h"
+#include "client/camera.h"
+#include "client/png_file.h"
+#include "client/terrain_levels.h"
+
+namespace spoor {
+
+enum class Ground { snow, sand };
+enum class Shade { lit, normals };
+
+struct RenderSettings {
+  int width_px = 1280;
+  int height_px = 720;
+  int sample_count = 4;            // of the multisampled target, 1 .. 8; clamped to what the renderer has
+  int fine_pages = 32;             // tiles along a side of the window with full detail
+  int coarse_pages = 12;           // pages of 64 samples along a side of each coarser one; see TerrainLevels
+  double sun_azimuth_deg = 135.0;  // from east towards north: north-west, as in hill-shaded maps
+  double sun_elevation_deg = 21.0;
+  double triangle_px = 8.0;        // wanted side of a triangle on the screen
+  double detail = 1.0;             // strength of the grain finer than a cell, 0 .. 1
+  Ground ground = Ground::snow;
+  Shade shade = Shade::lit;
+};
+
+/// Draws a world: ground, bodies, sky. Needs a current GL 4.5 context for its whole life. Throws std::runtime_error
+/// where the driver lacks something or a shader is wrong.
+class Renderer {
+ public:
+  /// The pack must outlive this.
+  Renderer(const ScenePack& pack, const RenderSettings& settings);
+
+  /// Tells which tiles differ from the last picture's.
+  void tilesChanged(std::span<const TileCoordinate> tiles);
+
+  /// Draws into the renderer's own target. The same view and camera give the same picture, whatever was drawn before.
+  void draw(const TerrainView& view, const Camera& camera);
+
+  /// Draws at another size from now on.
+  void resize(int width_px, int height_px);
+
+  /// Forgets the loaded ground: for a view of an earlier state or another one.
+  void forget();
+
+  Image readPicture() const;
+
+  /// Copies the picture to the window's framebuffer of the same size.
+  void showInWindow() const;
+
+  TerrainStats& stats() { return terrain_.stats; }
+  const RenderSettings& settings() const { return settings_; }
+
+ private:
+  void makeTargets();
+  void drawTerrain(const CameraFrame& frame);
+  void composePicture();
+  void fillFrame(const TerrainView& view, const Camera& camera, const CameraFrame& frame);
+
+  const ScenePack* pack_;
+  RenderSettings settings_;
+  double cell_m_;
+  glm::dvec3 sun_;
+  TerrainLevels terrain_;
+  BodyRenderer bodies_;
+  std::vector<TileCoordinate> changed_;
+  std::vector<Patch> patches_;
+  GlBuffer frame_block_, patch_buffer_;
+  GlVertexArray patch_layout_, no_layout_;
+  GlProgram terrain_program_, picture_program_;
+  GlTexture colour_, depth_;      // multisampled: bodies and the depth of all
+  GlRenderbuffer picture_colour_;
+  GlFramebuffer target_, picture_;
+};
+
+}  // namespace spoor

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "client/gl_objects.h"
+#include "shared/base/result.h"
+
+namespace spoor {
+
+/// The folder that holds render/ and rules/: SPOOR_SHADERS from the environment, else the one set at build time.
+std::filesystem::path shaderFolder();
+
+/// A shader with its includes put in. #line directives count files; `files[i]` is the name of number i.
+struct ShaderText {
+  std::string text;
+  std::vector<std::string> files;
+};
+
+/// Reads a file and resolves every `#include "..."`, relative to the file that names it. Lines `#include <...>` are for
+/// C++ and are blanked. Errors name file and line: a missing file, includes nested too deep.
+Result<ShaderText> loadShaderText(const std::filesystem::path& file);
+
+/// Puts file names in place of the numbers in a driver's log ("3:12(7): error" or "3(12) : error").
+std::string namedLog(const std::string& log, const std::vector<std::string>& files);
+
+/// Compiles and links the stages, given as paths below shaderFolder(); the suffix names the stage. Throws
+/// std::runtime_error with the first line of the driver's log, file and line named.
+GlProgram makeProgram(const std::vector<std::string>& stages);
+
+}  // namespace spoor

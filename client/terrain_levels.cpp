@@ -1,0 +1,256 @@
+#include "client/terrain_levels.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "client/shader_loader.h"
+#include "shared/base/assert.h"
+
+namespace spoor {
+
+using namespace render;
+
+namespace {
+
+constexpr std::size_t kPageCells = std::size_t(kPageSamples) * kPageSamples;
+constexpr std::size_t kBatchPages = 256;  // filled side by side before they are uploaded
+
+int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+int floorModulo(int a, int b) { return a - floorDivide(a, b) * b; }
+int strideOf(int level) { return 1 << (level * kLevelShift); }
+
+/// Width of the band in which a level turns into the next; small windows have narrower ones.
+int morphSamples(int level, int side) { return std::min(level == 0 ? kFineMorphSamples : kCoarseMorphSamples, side / 4); }
+
+GlTexture makeLayers(GLenum format, int side, int layers, GLint filter) {
+  GlTexture texture = makeTexture(layers == 1 ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY);
+  if (layers == 1) glTextureStorage2D(texture.name(), 1, format, side, side);
+  else glTextureStorage3D(texture.name(), 1, format, side, side, layers);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, filter);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, filter);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_REPEAT);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_REPEAT);
+  return texture;
+}
+
+/// Calls work(0 .. count - 1), spread over the machine's threads.
+template <typename Work>
+void forEachInParallel(std::size_t count, const Work& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  };
+  const std::size_t helpers = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency())) - 1;
+  std::vector<std::jthread> threads;
+  for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(run);
+  run();
+}
+
+}  // namespace
+
+bool TerrainLevels::windowsNest(int fine_pages, int coarse_pages) {
+  if (fine_pages < 2 || fine_pages > 64 || fine_pages % 2 != 0) return false;
+  if (coarse_pages < 4 || coarse_pages > 64 || coarse_pages % 2 != 0) return false;
+  // A window's middle lies within half a page of the focus.
+  const auto furthest = [](int pages) { return (pages * kPageSamples + kPageSamples) / 2; };
+  const int coarse_side = coarse_pages * kPageSamples;
+  const int pure = (coarse_side - kPageSamples) / 2 - morphSamples(1, coarse_side);
+  return std::max(furthest(fine_pages), furthest(coarse_pages)) <= pure << kLevelShift;
+}
+
+TerrainLevels::TerrainLevels(int fine_pages, int coarse_pages, double cell_m, const glm::dvec3& sun)
+    : coarse_pages_(coarse_pages), cell_m_(cell_m), sun_(sun) {
+  SPOOR_ASSERT(windowsNest(fine_pages, coarse_pages) && sun.z > 0.0);
+  for (int level = 0; level < kLevelCount; ++level) {
+    Level& l = levels_[std::size_t(level)];
+    l.page_count = level == 0 ? fine_pages : coarse_pages;
+    l.pages.resize(std::size_t(l.page_count) * std::size_t(l.page_count));
+  }
+  const int fine_side = fine_pages * kPageSamples;
+  const int coarse_side = coarse_pages * kPageSamples;
+  fine_height_ = makeLayers(GL_R32I, fine_side, 1, GL_NEAREST);
+  coarse_height_ = makeLayers(GL_R32I, coarse_side, kLevelCount - 1, GL_NEAREST);
+  fine_relief_ = makeLayers(GL_RGBA16F, fine_side, 1, GL_LINEAR);
+  coarse_relief_ = makeLayers(GL_RGBA16F, coarse_side, kLevelCount - 1, GL_LINEAR);
+  relief_job_ = makeBuffer();
+  glNamedBufferStorage(relief_job_.name(), sizeof(ReliefJob), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  relief_program_ = makeProgram({"render/relief.comp"});
+}
+
+void TerrainLevels::forget() {
+  for (Level& level : levels_) {
+    level.placed = false;
+    for (Page& page : level.pages) page.loaded = false;
+  }
+}
+
+void TerrainLevels::update(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed) {
+  for (int level = 0; level < kLevelCount; ++level) moveWindow(level, focus_cell);
+  // Changed tiles first: pages that are loaded below hold the newest heights anyway.
+  for (const TileCoordinate at : changed) uploadTile(view, at);
+  loadPages(view);
+  bind();
+  for (int level = 0; level < kLevelCount; ++level) makeRelief(level);
+}
+
+/// A page is as large as a patch of the next level, so a window's border is one of that level's patches.
+void TerrainLevels::moveWindow(int level, glm::ivec2 focus_cell) {
+  Level& l = levels_[std::size_t(level)];
+  static_assert(kPageSamples == kCoarsePatchSamples << kLevelShift);
+  const int page_cells = kPageSamples * strideOf(level);
+  const glm::ivec2 nearest(floorDivide(focus_cell.x + page_cells / 2, page_cells), floorDivide(focus_cell.y + page_cells / 2, page_cells));
+  const glm::ivec2 first = nearest - l.page_count / 2;
+  if (l.placed && first == l.first_page) return;
+  l.first_page = first;
+  l.placed = true;
+  // What left the window misses changes from now on, and its relief was made at the border: it must be loaded again.
+  for (Page& page : l.pages) {
+    const glm::ivec2 in_window = page.at - first;
+    const int last = l.page_count - 1;
+    if (in_window.x < 0 || in_window.y < 0 || in_window.x > last || in_window.y > last) page.loaded = false;
+  }
+  // The coarsest level shows its border, where relief depends on what the window held: made anew, so that a picture
+  // depends on the camera alone.
+  if (level == kLevelCount - 1) l.dirty = {{glm::ivec2(0), glm::ivec2(l.page_count * kPageSamples)}};
+}
+
+TerrainLevels::Page& TerrainLevels::slot(int level, glm::ivec2 page) {
+  Level& l = levels_[std::size_t(level)];
+  return l.pages[std::size_t(floorModulo(page.y, l.page_count) * l.page_count + floorModulo(page.x, l.page_count))];
+}
+const TerrainLevels::Page& TerrainLevels::slot(int level, glm::ivec2 page) const {
+  return const_cast<TerrainLevels*>(this)->slot(level, page);
+}
+
+bool TerrainLevels::holds(int level, glm::ivec2 page) const {
+  const Level& l = levels_[std::size_t(level)];
+  const glm::ivec2 in_window = page - l.first_page;
+  if (in_window.x < 0 || in_window.y < 0 || in_window.x >= l.page_count || in_window.y >= l.page_count) return false;
+  const Page& p = slot(level, page);
+  return p.loaded && p.at == page;
+}
+
+void TerrainLevels::loadPages(const TerrainView& view) {
+  struct Job {
+    int level;
+    glm::ivec2 page;
+  };
+  std::vector<Job> jobs;
+  for (int level = 0; level < kLevelCount; ++level) {
+    const Level& l = levels_[std::size_t(level)];
+    for (int y = 0; y < l.page_count; ++y)
+      for (int x = 0; x < l.page_count; ++x)
+        if (const glm::ivec2 page = l.first_page + glm::ivec2(x, y); !holds(level, page)) jobs.push_back({level, page});
+  }
+  std::vector<std::int32_t> height_q(std::min(jobs.size(), kBatchPages) * kPageCells);
+  for (std::size_t done = 0; done < jobs.size(); done += kBatchPages) {
+    const std::size_t count = std::min(kBatchPages, jobs.size() - done);
+    const auto boxOf = [&](std::size_t i) { return SampleBox{jobs[done + i].page * kPageSamples, glm::ivec2(kPageSamples)}; };
+    forEachInParallel(count, [&](std::size_t i) {
+      fillSamples(view, jobs[done + i].level, boxOf(i), std::span(height_q).subspan(i * kPageCells, kPageCells));
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto heights = std::span(height_q).subspan(i * kPageCells, kPageCells);
+      const auto [lowest, highest] = std::ranges::minmax_element(heights);
+      slot(jobs[done + i].level, jobs[done + i].page) = Page{jobs[done + i].page, true, {*lowest, *highest}};
+      uploadBox(jobs[done + i].level, boxOf(i), heights.data());
+      ++stats.pages_loaded;
+    }
+  }
+}
+
+void TerrainLevels::uploadTile(const TerrainView& view, TileCoordinate at) {
+  std::array<std::int32_t, kPageCells> height_q;
+  for (int level = 0; strideOf(level) <= kPageSamples; ++level) {
+    const int side = kPageSamples / strideOf(level);
+    const SampleBox box{glm::ivec2(at.x, at.y) * side, glm::ivec2(side)};
+    const glm::ivec2 page(floorDivide(box.first.x, kPageSamples), floorDivide(box.first.y, kPageSamples));
+    if (!holds(level, page)) continue;
+    const auto heights = std::span(height_q).first(std::size_t(side) * std::size_t(side));
+    fillSamples(view, level, box, heights);
+    uploadBox(level, box, heights.data());
+    const auto [lowest, highest] = std::ranges::minmax_element(heights);
+    slot(level, page).range.include({*lowest, *highest});
+    if (level == 0) ++stats.tiles_uploaded;
+  }
+}
+
+/// A box never crosses a page, so it never wraps round the torus.
+void TerrainLevels::uploadBox(int level, const SampleBox& box, const std::int32_t* height_q) {
+  Level& l = levels_[std::size_t(level)];
+  const int side = l.page_count * kPageSamples;
+  const glm::ivec2 texel(floorModulo(box.first.x, side), floorModulo(box.first.y, side));
+  if (level == 0)
+    glTextureSubImage2D(fine_height_.name(), 0, texel.x, texel.y, box.count.x, box.count.y, GL_RED_INTEGER, GL_INT, height_q);
+  else
+    glTextureSubImage3D(coarse_height_.name(), 0, texel.x, texel.y, level - 1, box.count.x, box.count.y, 1, GL_RED_INTEGER,
+                        GL_INT, height_q);
+  l.dirty.push_back({box.first - l.first_page * kPageSamples, box.count});
+  stats.samples_uploaded += std::int64_t(box.count.x) * box.count.y;
+}
+
+void TerrainLevels::makeRelief(int level) {
+  Level& l = levels_[std::size_t(level)];
+  if (l.dirty.empty()) return;
+  const int side = l.page_count * kPageSamples;
+  // What a changed sample can darken: its neighbourhood, and whatever marches through it towards the sun.
+  const glm::dvec2 towards = glm::dvec2(sun_) / std::max(std::abs(sun_.x), std::abs(sun_.y));
+  const glm::ivec2 march = glm::ivec2(glm::round(towards * double(kShadowSteps)));
+  const glm::ivec2 before = kOcclusionReach + glm::max(march, glm::ivec2(0)) + 1;
+  const glm::ivec2 behind = kOcclusionReach + glm::max(-march, glm::ivec2(0)) + 1;
+  std::int64_t area = 0;
+  for (SampleBox& box : l.dirty) {
+    const glm::ivec2 first = glm::max(box.first - before, glm::ivec2(0));
+    const glm::ivec2 end = glm::min(box.first + box.count + behind, glm::ivec2(side));
+    box = {first, glm::max(end - first, glm::ivec2(0))};
+    area += std::int64_t(box.count.x) * box.count.y;
+  }
+  if (area >= std::int64_t(side) * side) l.dirty = {{glm::ivec2(0), glm::ivec2(side)}};
+  for (const SampleBox& box : l.dirty) runRelief(level, box);
+  l.dirty.clear();
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // relief maps, read by terrain.frag
+}
+
+void TerrainLevels::runRelief(int level, const SampleBox& box) {
+  if (box.count.x == 0 || box.count.y == 0) return;
+  const LevelWindow window = windows()[std::size_t(level)];
+  const glm::dvec2 towards = glm::dvec2(sun_) / std::max(std::abs(sun_.x), std::abs(sun_.y));
+  ReliefJob job;
+  job.box = {box.first, box.count};
+  job.window = {window.window.z, window.texel.x, window.texel.y, level};
+  job.march = {float(towards.x), float(towards.y), float(sun_.z / std::hypot(sun_.x, sun_.y)), float(cell_m_ * strideOf(level))};
+  glNamedBufferSubData(relief_job_.name(), 0, sizeof job, &job);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kReliefJobBinding, relief_job_.name());
+  glBindImageTexture(kReliefImage, level == 0 ? fine_relief_.name() : coarse_relief_.name(), 0, GL_FALSE,
+                     level == 0 ? 0 : level - 1, GL_WRITE_ONLY, GL_RGBA16F);
+  glUseProgram(relief_program_.name());
+  glDispatchCompute(GLuint(box.count.x + 7) / 8, GLuint(box.count.y + 7) / 8, 1);
+  stats.relief_samples += std::int64_t(box.count.x) * box.count.y;
+}
+
+void TerrainLevels::bind() const {
+  glBindTextureUnit(kFineHeightUnit, fine_height_.name());
+  glBindTextureUnit(kCoarseHeightUnit, coarse_height_.name());
+  glBindTextureUnit(kFineReliefUnit, fine_relief_.name());
+  glBindTextureUnit(kCoarseReliefUnit, coarse_relief_.name());
+}
+
+std::array<LevelWindow, kLevelCount> TerrainLevels::windows() const {
+  std::array<LevelWindow, kLevelCount> result;
+  for (int level = 0; level < kLevelCount; ++level) {
+    const Level& l = levels_[std::size_t(level)];
+    const int side = l.page_count * kPageSamples;
+    const glm::ivec2 first = l.first_page * kPageSamples;
+    result[std::size_t(level)] = {{first * strideOf(level), side, level * kLevelShift},
+                                  {floorModulo(first.x, side), floorModulo(first.y, side), level == 0 ? 0 : strideOf(level) / 2, morphSamples(level, side)}};
+  }
+  return result;
+}
+
+int TerrainLevels::reachCells() const {
+  return (coarse_pages_ / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1);
+}
+
+}  // namespace spoor

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "client/camera.h"
+#include "client/gl_objects.h"
+#include "client/terrain_view.h"
+#include "shaders/render/frame.h"
+
+namespace spoor {
+
+/// What loading did since the last reset, for tests and the curious.
+struct TerrainStats {
+  std::int64_t pages_loaded = 0;       // pages filled because the window moved
+  std::int64_t tiles_uploaded = 0;     // changed tiles sent to level 0
+  std::int64_t samples_uploaded = 0;   // of all levels, by both
+  std::int64_t relief_samples = 0;     // recomputed by relief.comp
+  std::int64_t patches_drawn = 0;
+};
+
+/// One patch to draw, as the shaders read it: first cell x, y; level; flags.
+using Patch = glm::ivec4;
+
+/// The ground's heights and relief on the graphics card: nested windows round a focus, each a torus of pages, so that
+/// moving the focus loads only pages that came into view, and a changed tile uploads only itself.
+class TerrainLevels {
+ public:
+  /// @param fine_pages    tiles along a side of the finest window, even
+  /// @param coarse_pages  pages along a side of each coarser window, even; see windowsNest
+  /// @param sun           unit vector towards the sun, z > 0
+  TerrainLevels(int fine_pages, int coarse_pages, double cell_m, const glm::dvec3& sun);
+
+  /// True where every window lies inside the part of the next one that has not begun to turn into a coarser one.
+  static bool windowsNest(int fine_pages, int coarse_pages);
+
+  /// Brings the windows to the focus and the textures up to date. `changed`: tiles that differ from the last call's.
+  void update(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed);
+
+  /// Throws everything away: for a view of another world, or one that went back in time.
+  void forget();
+
+  void bind() const;
+  std::array<render::LevelWindow, render::kLevelCount> windows() const;
+
+  /// Adds the patches that the camera may see.
+  void collectPatches(const CameraFrame& camera, std::vector<Patch>& out) const;
+
+  /// Distance from the focus that the coarsest window covers on every side, in cells.
+  int reachCells() const;
+
+  TerrainStats stats;
+
+ private:
+  struct HeightRange {
+    std::int32_t lowest_q = 0, highest_q = 0;
+    void include(const HeightRange& other) {
+      lowest_q = std::min(lowest_q, other.lowest_q);
+      highest_q = std::max(highest_q, other.highest_q);
+    }
+  };
+  struct Page {
+    glm::ivec2 at{0};
+    bool loaded = false;
+    HeightRange range;
+  };
+  struct Level {
+    int page_count = 0;           // along a side
+    glm::ivec2 first_page{0};
+    bool placed = false;
+    std::vector<Page> pages;      // torus, row-major [page_count * page_count]
+    std::vector<SampleBox> dirty;  // samples changed since the relief was made
+  };
+
+  void moveWindow(int level, glm::ivec2 focus_cell);
+  void loadPages(const TerrainView& view);
+  void uploadTile(const TerrainView& view, TileCoordinate at);
+  void uploadBox(int level, const SampleBox& box, const std::int32_t* height_q);
+  void makeRelief(int level);
+  void runRelief(int level, const SampleBox& box);
+  bool holds(int level, glm::ivec2 page) const;
+  HeightRange rangeAround(int level, glm::ivec2 page) const;
+  void collectLevel(int level, const CameraFrame& camera, std::vector<Patch>& out) const;
+  Page& slot(int level, glm::ivec2 page);
+  const Page& slot(int level, glm::ivec2 page) const;
+
+  int coarse_pages_;
+  double cell_m_;
+  glm::dvec3 sun_;
+  std::array<Level, render::kLevelCount> levels_;
+  GlTexture fine_height_, coarse_height_, fine_relief_, coarse_relief_;
+  GlBuffer relief_job_;
+  GlProgram relief_program_;
+};
+
+}  // namespace spoor

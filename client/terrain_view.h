@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/glm.hpp>
+
+#include "shared/world/state.h"
+
+namespace spoor {
+
+/// The ground as a renderer sees it: dormant tiles are the base's heights, live ones the state's. Borrows both.
+struct TerrainView {
+  const BaseTerrain* base = nullptr;
+  const WorldState* state = nullptr;
+};
+
+/// Samples of one terrain level (shaders/render/frame.h): first sample and count along x and y.
+struct SampleBox {
+  glm::ivec2 first{0};
+  glm::ivec2 count{0};
+};
+
+/// Heights of a box of samples, row-major [count.x * count.y], 0.1 mm.
+/// Level 0 samples are cells. A sample of another level is the base at the middle of its cells plus the mean of what
+/// live cells gained or lost; of levels coarser than a tile it is the base alone.
+/// The ground beyond the world's border mirrors the base within, so that pictures reach the horizon.
+/// `box` is made of whole tiles where a tile has a sample at all. Thread-safe where nobody changes the state.
+void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::span<std::int32_t> height_q);
+
+}  // namespace spoor

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "client/camera.h"
+#include "client/terrain_view.h"
+
+namespace spoor {
+
+/// Fixed cameras, framed by what there is: live tiles, bodies and their paths. The state must belong to the base's pack.
+
+/// Behind a body, along its heading, as far as the bodies that share its path are large. The pack must have bodies.
+Camera followView(const TerrainView& view, int body_index);
+
+/// A three-quarter view of the tracks where two paths cross (the crossing nearest to the middle of the live tiles), lit
+/// from the side; where none do, of the live tile nearest to the middle.
+Camera trailsView(const TerrainView& view, double sun_azimuth_deg);
+
+/// Straight down on all live tiles, north up, orthographic.
+Camera aboveView(const TerrainView& view, double aspect);
+
+/// Bodies worth following: the first of each path.
+std::vector<int> leadingBodies(const ScenePack& pack);
+
+/// The ground's height at a place [m], bilinear between cell centres; the border's outside the world.
+double groundHeight(const TerrainView& view, const glm::dvec2& place_m);
+
+}  // namespace spoor

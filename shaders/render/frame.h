@@ -1,0 +1,86 @@
+// What the renderer's C++ and its shaders agree on: binding points, sizes, and the blocks that every frame fills.
+#ifndef SPOOR_RENDER_FRAME_H
+#define SPOOR_RENDER_FRAME_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+#define RENDER_CONST inline constexpr int
+namespace spoor::render {
+using glm::ivec4;
+using glm::mat4;
+using glm::vec4;
+#else
+#define RENDER_CONST const int
+#endif
+
+// Terrain levels: level l holds one sample for 4^l cells a side, in a window round the camera's focus. Windows nest.
+RENDER_CONST kLevelCount = 5;
+RENDER_CONST kLevelShift = 2;           // log2 of the ratio between levels
+RENDER_CONST kPageSamples = 64;         // a page is what is loaded at once; a page of level 0 is a tile
+RENDER_CONST kFinePatchSamples = 64;    // side of a drawn patch of level 0
+RENDER_CONST kCoarsePatchSamples = 16;  // side of a drawn patch of the other levels
+RENDER_CONST kFineMorphSamples = 192;   // width of the band in which a level turns into the next
+RENDER_CONST kCoarseMorphSamples = 80;
+RENDER_CONST kMorphRimSamples = 16;     // the rim of a window that shows the next level only: wider than kShadowSteps
+RENDER_CONST kShadowSteps = 12;         // samples marched towards the sun, in each level
+RENDER_CONST kOcclusionReach = 6;       // samples looked at around a sample for the sky's light
+
+// Patch flags, one bit an edge in the order west, south, east, north.
+RENDER_CONST kRimEdges = 1;             // << edge: the edge lies on the window's border
+RENDER_CONST kHoleEdges = 16;           // << edge: the edge borders on the next finer window
+
+RENDER_CONST kShadeLit = 0;
+RENDER_CONST kShadeNormals = 1;
+RENDER_CONST kGroundSnow = 0;
+RENDER_CONST kGroundSand = 1;
+
+// Binding points.
+RENDER_CONST kFrameBinding = 0;         // uniform block
+RENDER_CONST kReliefJobBinding = 1;     // uniform block
+RENDER_CONST kFineHeightUnit = 0;       // texture units
+RENDER_CONST kCoarseHeightUnit = 1;
+RENDER_CONST kFineReliefUnit = 2;
+RENDER_CONST kCoarseReliefUnit = 3;
+RENDER_CONST kBodyShadowUnit = 4;
+RENDER_CONST kColourUnit = 5;
+RENDER_CONST kDepthUnit = 6;
+RENDER_CONST kReliefImage = 0;          // image unit
+
+/// Where a level's window lies in the world and in its texture, which is a torus.
+struct LevelWindow {
+  ivec4 window;  // first cell x, y; samples a side; log2 of cells a sample
+  ivec4 texel;   // texel of the first sample x, y; cells from a block's corner to its sample; samples of the morph band
+};
+
+/// All positions are metres from the centre of the origin cell at the origin height: small numbers near the camera.
+struct Frame {
+  mat4 clip_from_rel;
+  mat4 shadow_from_rel;  // to the bodies' shadow map, 0 .. 1
+  vec4 eye;              // camera; w > 0: orthographic
+  vec4 ray_right;        // place at (x, y) of the screen, -1 .. 1: eye + away * (forward + x * right + y * up) [m];
+  vec4 ray_up;           // orthographic: eye + x * right + y * up + away * forward
+  vec4 ray_forward;      // w: depth * away [m]; orthographic: away of depth 0 [m]
+  vec4 sun;              // towards the sun; w: tangent of its elevation
+  vec4 scale;            // cell side [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
+  vec4 look;             // strength of the fine detail, 0 .. 1; side of the shadow map's texel [m]; samples a pixel; unused
+  ivec4 origin;          // cell x, y; height, 0.1 mm
+  ivec4 world;           // cells x, y; kGround*; kShade*
+  LevelWindow levels[kLevelCount];
+};
+
+/// One dispatch of relief.comp: a box of texels of one level.
+struct ReliefJob {
+  ivec4 box;     // first sample x, y (from the window's first); samples x, y
+  ivec4 window;  // samples a side; texel of the first sample x, y; layer
+  vec4 march;    // unit steps towards the sun, along x and y (the longer is +-1); tangent of its elevation; side of a sample [m]
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(LevelWindow) == 32);
+static_assert(sizeof(Frame) == 2 * 64 + 9 * 16 + kLevelCount * 32);
+static_assert(sizeof(ReliefJob) == 48);
+}  // namespace spoor::render
+#else
+layout(std140, binding = kFrameBinding) uniform FrameBlock { Frame frame; };
+#endif
+#endif

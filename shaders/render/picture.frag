@@ -1,0 +1,48 @@
+// Picture, fragment stage: puts bodies, ground and sky together and shades the last two, once a pixel where its samples
+// lie close together. In: bodies' colours (alpha 1) and depths of all samples. Out: colour; alpha: share that is no sky.
+#version 450 core
+#include "ground.glsl"
+
+layout(binding = kColourUnit) uniform sampler2DMS colour_in;
+layout(binding = kDepthUnit) uniform sampler2DMS depth_in;
+layout(location = 0) out vec4 colour_out;
+
+const int kSampleLimit = 8;
+
+/// The place that a depth stands for, through the middle of the pixel.
+vec3 placeAt(vec2 screen, float depth) {
+  vec3 aside = screen.x * frame.ray_right.xyz + screen.y * frame.ray_up.xyz;
+  if (frame.eye.w > 0.0) return frame.eye.xyz + aside + (1.0 - depth) * frame.ray_forward.w * frame.ray_forward.xyz;
+  return frame.eye.xyz + frame.ray_forward.w / depth * (frame.ray_forward.xyz + aside);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec2 screen = gl_FragCoord.xy / vec2(textureSize(depth_in)) * 2.0 - 1.0;
+  int sample_count = min(int(frame.look.z), kSampleLimit);
+  vec4 sum = vec4(0.0);
+  float ground_count = 0.0, depth_sum = 0.0, nearest = 0.0, furthest = 1.0;
+  float depths[kSampleLimit];
+  for (int i = 0; i < sample_count; ++i) {
+    vec4 body = texelFetch(colour_in, pixel, i);
+    float depth = texelFetch(depth_in, pixel, i).r;
+    bool ground = depth > 0.0 && body.a == 0.0;
+    depths[i] = ground ? depth : 0.0;
+    sum += body.a == 0.0 ? vec4(0.0) : body;
+    if (!ground) continue;
+    ground_count += 1.0;
+    depth_sum += depth;
+    nearest = max(nearest, depth);
+    furthest = min(furthest, depth);
+  }
+  if (ground_count > 0.0 && (frame.eye.w > 0.0 || nearest < 1.15 * furthest)) {
+    sum += vec4(groundColour(placeAt(screen, depth_sum / ground_count)), 1.0) * ground_count;
+  } else if (ground_count > 0.0) {
+    for (int i = 0; i < sample_count; ++i)
+      if (depths[i] > 0.0) sum += vec4(groundColour(placeAt(screen, depths[i])), 1.0);
+  }
+  float covered = sum.a / float(sample_count);
+  vec3 direction = normalize(frame.ray_forward.xyz + screen.x * frame.ray_right.xyz + screen.y * frame.ray_up.xyz);
+  vec3 behind = covered < 1.0 ? toScreen(skyWithSun(direction)) : vec3(0.0);
+  colour_out = vec4(sum.rgb / float(sample_count) + (1.0 - covered) * behind, covered);
+}

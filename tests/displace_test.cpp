@@ -1,0 +1,111 @@
+// Stage displace: soil goes to its nearest free cell as far as there is room, and none is lost.
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+#include "shaders/rules/displace.h"
+#include "tests/stage_rig.h"
+
+namespace spoor::test {
+namespace {
+
+constexpr int kNone = rules::kNoUnderside;
+
+std::vector<std::int32_t> level(int height) { return std::vector<std::int32_t>(25, height); }
+
+TEST(Displace, FiveByFiveCellsUnderASmallBody) {
+  const World world(groundPack(5, 5, level(1000), 5000));
+  StageRig rig(world);
+  rig.setUnderside({kNone, kNone, kNone, kNone, kNone,  //
+                    kNone, 900,   800,   900,   kNone,  //
+                    kNone, 900,   700,   900,   kNone,  //
+                    kNone, kNone, kNone, kNone, kNone,  //
+                    kNone, kNone, kNone, kNone, kNone});
+  rig.displace();
+  // The middle column is as near to its upper as to its lower neighbour: the lower row wins; the cell above the middle
+  // goes down, the middle itself up to row 3.
+  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1100, 1200, 1100, 1000,  //
+                                                                   1000, 900,  800,  900,  1000,  //
+                                                                   1100, 900,  700,  900,  1100,  //
+                                                                   1000, 1000, 1300, 1000, 1000,  //
+                                                                   1000, 1000, 1000, 1000, 1000}));
+}
+
+TEST(Displace, WithoutEnoughRoomEachSourceGetsItsShareRoundedDown) {
+  const World world(groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000));
+  StageRig rig(world);
+  // Cells 1 and 2 want to give 400 and 300 to cell 0, under a roof 500 above it; cells 3 and 4 are no place to go.
+  rig.setUnderside({1500, 600, 700, 1000, 1000});
+  rig.displace();
+  // floor(400 * 500 / 700) = 285, floor(300 * 500 / 700) = 214: one unit of room stays free.
+  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1499, 715, 786, 1000, 1000}));
+}
+
+TEST(Displace, WithoutAnyFreeCellAllSoilStays) {
+  const World world(groundPack(3, 1, {1000, 1000, 1000}, 5000));
+  StageRig rig(world);
+  rig.setUnderside({500, 600, 1000});
+  rig.displace();
+  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1000, 1000}));
+}
+
+TEST(Displace, DownToBedrockAndNoDeeper) {
+  const World world(groundPack(3, 1, {1000, 1000, 1000}, 300));
+  StageRig rig(world);
+  rig.setUnderside({kNone, -5000, kNone});
+  rig.displace();
+  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1300, 700, 1000}));
+}
+
+TEST(Displace, AGapOfTheObstacleThresholdTakesNothing) {
+  ScenePack pack = groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000);
+  pack.obstacle_threshold_q = 80;
+  const World world(std::move(pack));
+  StageRig rig(world);
+  rig.setUnderside({kNone, 1080, 900, 1081, kNone});
+  rig.displace();
+  // Cell 1 has a gap of 80: an obstacle. Cell 3 has 81: room for 81 of the 100.
+  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1000, 919, 1081, 1000}));
+}
+
+TEST(Displace, AShareIsRequestTimesRoomOverTotalForTheLargestNumbers) {
+  const std::int64_t totals[] = {1, 7, 1 << 30, std::int64_t(1) << 40, (std::int64_t(1) << 62) - 1};
+  for (const std::int64_t total : totals)
+    for (const int request : {1, 3, 1 << 29, rules::kHeightLimit})
+      for (const int room : {0, 1, 12345, rules::kHeightLimit, INT32_MAX}) {
+        if (request > total) continue;
+        const auto expected = total <= room ? request : std::int64_t(__int128(request) * room / total);
+        EXPECT_EQ(rules::grantedShare(request, room, total), expected) << request << ", " << room << ", " << total;
+      }
+}
+
+/// Random ground under random undersides: the native stages and the oracle leave the same heights, and their sum.
+void checkRandomWorld(int columns, int rows, std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  ScenePack pack = noisePack(columns, rows, engine(), -3000, 3000, seed % 2 == 0 ? 100000 : 700);
+  pack.obstacle_threshold_q = seed % 3 == 0 ? 0 : 300;
+  const World world(std::move(pack));
+  StageRig rig(world, 1 + int(seed % 3));
+  std::vector<std::int32_t> underside;
+  const auto covered = 1 + engine() % 9;  // of ten cells
+  for (int i = 0; i < columns * rows; ++i)
+    underside.push_back(engine() % 10 >= covered ? kNone : int(engine() % 8000) - 4000);
+  rig.setUnderside(underside);
+  const auto before = rig.cells(rig.area.height);
+  DenseWorld dense = denseCopy(rig);
+  rig.displace();
+  const auto overlap = oracleOverlap(dense, world.pack.obstacle_threshold_q);
+  oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.obstacle_threshold_q);
+  const auto after = rig.cells(rig.area.height);
+  ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
+  ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)), std::accumulate(before.begin(), before.end(), std::int64_t(0)));
+}
+
+TEST(Displace, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
+  for (std::uint32_t seed = 0; seed < 12; ++seed)
+    for (const auto& [columns, rows] : {std::pair{77, 41}, {1, 200}, {65, 1}, {9, 66}}) checkRandomWorld(columns, rows, seed);
+}
+
+}  // namespace
+}  // namespace spoor::test

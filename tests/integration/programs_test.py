@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Real programs over real sockets: programs_test.py BIN_DIRECTORY SOURCE_DIRECTORY [CASE]
+
+Every wait is bounded; nothing is timed.
+"""
+import json
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+BIN = pathlib.Path(sys.argv[1])
+SOURCE = pathlib.Path(sys.argv[2])
+LIMIT_S = 120
+
+
+class Failure(Exception):
+    pass
+
+
+def expect(condition, why):
+    if not condition:
+        raise Failure(why)
+
+
+def start(program, *options):
+    return subprocess.Popen([BIN / program, *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def finish(process):
+    out, err = process.communicate(timeout=LIMIT_S)
+    return process.returncode, out, err
+
+
+def run(program, *options):
+    return finish(start(program, *options))
+
+
+class Server:
+    """A server on a port of its own choice; lines of its log as they come."""
+
+    def __init__(self, *options):
+        self.process = start("spoor-server", "--port=0", *options)
+        self.port = int(self.line_with(r" port (\d+)$").group(1))
+
+    def line_with(self, pattern):
+        while line := self.process.stderr.readline():
+            if match := re.search(pattern, line.rstrip()):
+                return match
+        raise Failure(f"the server never said '{pattern}'")
+
+    def join(self, name, *options):
+        return start("spoor-client", f"--connect=127.0.0.1:{self.port}", "--headless", f"--name={name}", "--size=160x90", *options)
+
+
+def client_hash(out):
+    match = re.search(r"hash ([0-9a-f]{16})", out)
+    expect(match, f"a client printed no hash: {out}")
+    return match.group(1)
+
+
+def clients_and_replay_end_on_the_servers_hash(scratch):
+    """Two clients from the start, one killed and joined again in the middle, a replay: one hash."""
+    session, figures = scratch / "convoy.session", scratch / "convoy.json"
+    server = Server(f"--scene={SOURCE}/scenes/convoy.toml", "--ticks=240", "--rate=60", "--wait-clients=2",
+                    f"--session={session}", f"--json={figures}")
+    steady = server.join("steady", f"--out={scratch}/steady")
+    leaving = server.join("leaving", f"--out={scratch}/leaving")
+    server.line_with(r"tick +\d+ of 240")
+    leaving.send_signal(signal.SIGKILL)
+    leaving.wait()
+    again = server.join("again", f"--out={scratch}/again")
+    hashes = []
+    for client in (steady, again):
+        code, out, err = finish(client)
+        expect(code == 0, f"a client failed with {code}: {err}")
+        hashes.append(client_hash(out))
+    code, table, err = finish(server.process)
+    expect(code == 0, f"the server failed with {code}: {table} {err}")
+    report = json.loads(figures.read_text())
+    expect(report["ledger"]["error"] == 0, "the ledger is off")
+    expect(set(hashes) == {report["server_hash"]}, f"clients {hashes}, server {report['server_hash']}")
+    expect((scratch / "steady/trails.png").read_bytes() == (scratch / "again/trails.png").read_bytes(), "the pictures differ")
+    for threads in (1, 3):
+        code, out, err = run("spoor-replay", "verify", session, f"--threads={threads}")
+        expect(code == 0 and report["server_hash"] in out, f"replay: {out} {err}")
+
+
+def replay_names_the_damaged_record(scratch):
+    session = scratch / "box.session"
+    code, _, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--port=0", "--ticks=20", "--rate=0", f"--session={session}")
+    expect(code == 0, err)
+    whole = session.read_bytes()
+    session.write_bytes(whole[:-40])
+    code, out, err = run("spoor-replay", "verify", session)
+    expect(code == 0 and "verified 19 ticks (the file ends within the next)" in out, f"{code} {out} {err}")
+    session.write_bytes(whole[:-40] + bytes([whole[-40] ^ 1]) + whole[-39:])
+    code, out, err = run("spoor-replay", "verify", session)
+    expect(code == 1 and "damaged" in err and "byte" in err, f"{code} {out} {err}")
+
+
+def a_client_says_in_one_line_why_it_cannot_join(scratch):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as closed:
+        closed.bind(("127.0.0.1", 0))
+        port = closed.getsockname()[1]
+    for target in (f"127.0.0.1:{port}", "no-such-host.invalid:47474", "127.0.0.1:notaport"):
+        code, out, err = run("spoor-client", f"--connect={target}", "--headless", f"--out={scratch}/none")
+        expect(code != 0, f"{target}: joined something")
+        expect(len(err.strip().splitlines()) == 1, f"{target}: not one line: {err}")
+
+
+def a_client_says_that_the_server_went_away(scratch):
+    server = Server(f"--scene={SOURCE}/scenes/box.toml", "--ticks=100000", "--rate=60", "--wait-clients=1")
+    client = server.join("left", f"--out={scratch}/left")
+    server.line_with(r"tick +\d+ of")
+    server.process.send_signal(signal.SIGKILL)
+    server.process.wait()
+    code, _, err = finish(client)
+    expect(code == 1 and len(err.strip().splitlines()) == 1, f"{code}: {err}")
+
+
+def bad_command_lines_exit_2(scratch):
+    for program, option in (("spoor-server", "--nonsense"), ("spoor-server", "--ticks=many"), ("spoor-client", "--nonsense"),
+                            ("spoor-replay", "dance"), ("spoor-bench", "--ticks=-1"), ("spoor-import", "--scene=x")):
+        code, _, err = run(program, option)
+        expect(code == 2 and len(err.strip().splitlines()) == 1, f"{program} {option}: {code} {err}")
+        code, out, _ = run(program, "--help")
+        expect(code == 0 and "--" in out, f"{program} --help: {code}")
+
+
+def bad_scenes_name_file_key_and_reason(scratch):
+    scene = scratch / "bad.toml"
+    scene.write_text('name = "bad"\n[world]\ncells = [64, 64]\ncell_m = -1\n[base]\nkind = "noise"\n')
+    code, _, err = run("spoor-server", f"--scene={scene}")
+    expect(code == 1 and "bad.toml" in err and "cell_m" in err, err)
+    code, _, err = run("spoor-server", f"--scene={scratch}/missing.toml")
+    expect(code == 1 and "missing.toml" in err, err)
+    code, _, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--backend=abacus")
+    expect(code == 1 and "abacus" in err, err)
+
+
+CASES = [
+    clients_and_replay_end_on_the_servers_hash,
+    replay_names_the_damaged_record,
+    a_client_says_in_one_line_why_it_cannot_join,
+    a_client_says_that_the_server_went_away,
+    bad_command_lines_exit_2,
+    bad_scenes_name_file_key_and_reason,
+]
+
+
+def main():
+    wanted = sys.argv[3] if len(sys.argv) > 3 else None
+    chosen = [case for case in CASES if wanted in (None, case.__name__)]
+    if not chosen:
+        print(f"no case {wanted}; there are: {', '.join(case.__name__ for case in CASES)}")
+        return 2
+    failed = 0
+    for case in chosen:
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                case(pathlib.Path(folder))
+                print(f"ok      {case.__name__}")
+            except (Failure, subprocess.TimeoutExpired) as fault:
+                failed += 1
+                print(f"FAILED  {case.__name__}: {fault}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,181 @@
+// Every set of kernels that this processor runs, against plain loops over the rules.
+#include "shared/base/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "shaders/rules/exchange.h"
+#include "shaders/rules/mix.h"
+#include "shaders/rules/penetration.h"
+#include "shaders/rules/raster.h"
+
+namespace spoor::test {
+namespace {
+
+using Cells = std::vector<std::int32_t>;
+constexpr int kLongestRow = 130;
+
+class EveryKernels : public ::testing::TestWithParam<const Kernels*> {
+ protected:
+  const Kernels& kernels_ = *GetParam();
+  std::mt19937 engine_{51};
+
+  /// `count` numbers around zero, some of them at the ends of the range.
+  Cells numbers(int count, int range) {
+    Cells cells;
+    for (int i = 0; i < count; ++i) {
+      const auto kind = engine_() % 20;
+      const int value = int(engine_() % std::uint32_t(2 * range + 1)) - range;
+      cells.push_back(kind == 0 ? rules::kHeightLimit : kind == 1 ? -rules::kHeightLimit : value);
+    }
+    return cells;
+  }
+  /// Bedrock at or below the given heights.
+  Cells below(const Cells& heights) {
+    Cells bedrock;
+    for (const int height : heights) bedrock.push_back(std::max(height - int(engine_() % 900), -rules::kHeightLimit));
+    return bedrock;
+  }
+};
+
+TEST_P(EveryKernels, HashOfATileIsTheSumOfItsCells) {
+  for (const auto& [x0, y0] : {std::pair{0, 0}, {64, 128}, {(1 << 24) - 64, 640}}) {
+    const Cells cells = numbers(rules::kTileCells, 1 << 20);
+    std::uint64_t expected = 0;
+    for (int i = 0; i < rules::kTileCells; ++i) {
+      const rules::uint key = rules::cellKey(x0 + i % rules::kTileSize, y0 + i / rules::kTileSize, 0);
+      expected += rules::cellMixLow(key, cells[std::size_t(i)]);
+      expected += std::uint64_t(rules::cellMixHigh(key, cells[std::size_t(i)])) << 32;
+    }
+    EXPECT_EQ(kernels_.hashTile(cells.data(), x0, y0, 0), expected);
+    EXPECT_NE(kernels_.hashTile(cells.data(), x0, y0, 1), expected) << "planes must differ";
+  }
+}
+
+TEST_P(EveryKernels, SumsAndEndsOfRows) {
+  for (int n = 0; n <= kLongestRow; ++n) {
+    const Cells cells = numbers(n, 1 << 20);
+    std::int64_t sum = 0;
+    for (const int value : cells) sum += value;
+    ASSERT_EQ(kernels_.sum(cells.data(), n), sum) << n;
+    if (n == 0) continue;
+    ASSERT_EQ(kernels_.lowest(cells.data(), n), *std::ranges::min_element(cells)) << n;
+    ASSERT_EQ(kernels_.highest(cells.data(), n), *std::ranges::max_element(cells)) << n;
+  }
+}
+
+TEST_P(EveryKernels, LowersAlongARow) {
+  for (int n = 0; n <= kLongestRow; ++n) {
+    const Cells before = numbers(n, 50000);
+    const int first = int(engine_() % 20000) - 10000, step = int(engine_() % 600) - 300, fraction = int(engine_() % 65536);
+    Cells cells = before;
+    kernels_.lowerAlong(cells.data(), n, first, step, fraction, -12000, 11000);
+    for (int i = 0; i < n; ++i)
+      ASSERT_EQ(cells[std::size_t(i)], std::min(before[std::size_t(i)], rules::triangleHeightAlong(first, step, fraction, i, -12000, 11000)))
+          << "cell " << i << " of " << n;
+  }
+}
+
+TEST_P(EveryKernels, OverlapOfARow) {
+  for (int n = 0; n <= kLongestRow; ++n) {
+    const Cells height = numbers(n, 1000), bedrock = below(height), underside = numbers(n, 1200);
+    Cells overlap(std::size_t(n), 77);
+    const int count = kernels_.overlap(height.data(), bedrock.data(), underside.data(), n, 100, overlap.data());
+    int expected_count = 0;
+    for (std::size_t i = 0; i < std::size_t(n); ++i) {
+      const int expected = rules::cellOverlap(height[i], bedrock[i], underside[i], 100);
+      ASSERT_EQ(overlap[i], expected) << "cell " << i << " of " << n;
+      expected_count += expected > 0 ? 1 : 0;
+    }
+    ASSERT_EQ(count, expected_count) << n;
+  }
+}
+
+TEST_P(EveryKernels, NearestFreeRowOfEachColumn) {
+  constexpr int kRows = 40;
+  for (int n = 0; n <= kLongestRow; n += 1 + n / 20) {
+    std::vector<Cells> overlap(kRows), nearest(kRows, Cells(std::size_t(n)));
+    for (Cells& row : overlap)
+      for (int i = 0; i < n; ++i) row.push_back(engine_() % 12 == 0 && i % 7 != 0 ? rules::kFree : int(engine_() % 2));
+    Cells last(std::size_t(n), kNoFreeRow);
+    for (int y = 0; y < kRows; ++y) kernels_.carryFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
+    last.assign(std::size_t(n), kNoFreeRow);
+    for (int y = kRows - 1; y >= 0; --y)
+      kernels_.mergeFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
+    for (int y = 0; y < kRows; ++y)
+      for (int i = 0; i < n; ++i) {
+        int expected = kNoFreeRow;
+        for (int free = 0; free < kRows; ++free)
+          if (overlap[std::size_t(free)][std::size_t(i)] == rules::kFree && std::abs(free - y) < std::abs(expected - y)) expected = free;
+        ASSERT_EQ(nearest[std::size_t(y)][std::size_t(i)], expected) << "column " << i << " of " << n << ", row " << y;
+      }
+  }
+}
+
+/// What one pair becomes; true if any soil moved.
+bool exchangeByRule(int& a, int& b, int bedrock_a, int bedrock_b, int room_a, int room_b, int threshold) {
+  const int flow = rules::pairFlow(a, b, threshold, a - bedrock_a, b - bedrock_b, room_a, room_b);
+  a -= flow;
+  b += flow;
+  return flow != 0;
+}
+
+TEST_P(EveryKernels, ExchangesBetweenTwoRows) {
+  for (int n = 0; n <= kLongestRow; ++n)
+    for (const bool beneath : {false, true}) {
+      Cells a = numbers(n, 2000), b = numbers(n, 2000), expected_a = a, expected_b = b;
+      const Cells rock_a = below(a), rock_b = below(b), under_a = numbers(n, 3000), under_b = numbers(n, 3000);
+      const int threshold = n % 3 == 0 ? 100000000 : 300;  // with the large one only cells at the ends move
+      bool moved = false;
+      for (std::size_t i = 0; i < std::size_t(n); ++i) {
+        const int room_a = beneath ? rules::roomBeneath(a[i], under_a[i], 50) : rules::kHeightLimit;
+        const int room_b = beneath ? rules::roomBeneath(b[i], under_b[i], 50) : rules::kHeightLimit;
+        moved |= exchangeByRule(expected_a[i], expected_b[i], rock_a[i], rock_b[i], room_a, room_b, threshold);
+      }
+      const bool reported = beneath ? kernels_.exchangeRowsBeneath(a.data(), b.data(), rock_a.data(), rock_b.data(), under_a.data(),
+                                                                   under_b.data(), n, threshold, 50)
+                                    : kernels_.exchangeRows(a.data(), b.data(), rock_a.data(), rock_b.data(), n, threshold);
+      ASSERT_EQ(a, expected_a) << n << (beneath ? " beneath" : "");
+      ASSERT_EQ(b, expected_b) << n << (beneath ? " beneath" : "");
+      ASSERT_EQ(reported, moved) << n << (beneath ? " beneath" : "");
+    }
+}
+
+TEST_P(EveryKernels, ExchangesWithinARow) {
+  for (int pairs = 0; pairs <= rules::kTileSize / 2; ++pairs)
+    for (const bool beneath : {false, true}) {
+      // One more cell may be read, and none but the pairs' may change.
+      Cells cells = numbers(2 * pairs + 2, 2000), expected = cells;
+      const Cells rock = below(cells), under = numbers(2 * pairs + 2, 3000);
+      bool moved = false;
+      for (std::size_t i = 0; i < std::size_t(2 * pairs); i += 2) {
+        const int room_a = beneath ? rules::roomBeneath(cells[i], under[i], 50) : rules::kHeightLimit;
+        const int room_b = beneath ? rules::roomBeneath(cells[i + 1], under[i + 1], 50) : rules::kHeightLimit;
+        moved |= exchangeByRule(expected[i], expected[i + 1], rock[i], rock[i + 1], room_a, room_b, 300);
+      }
+      const bool reported = beneath ? kernels_.exchangeWithinBeneath(cells.data(), rock.data(), under.data(), pairs, 300, 50)
+                                    : kernels_.exchangeWithin(cells.data(), rock.data(), pairs, 300);
+      ASSERT_EQ(cells, expected) << pairs << (beneath ? " beneath" : "");
+      ASSERT_EQ(reported, moved) << pairs << (beneath ? " beneath" : "");
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Available, EveryKernels, ::testing::ValuesIn(availableKernels().begin(), availableKernels().end()),
+                         [](const auto& set) { return std::string(set.param->name); });
+
+TEST(Kernels, BaselineIsAlwaysThereAndTheFastestIsTheLast) {
+  ASSERT_FALSE(availableKernels().empty());
+  EXPECT_STREQ(availableKernels().front()->name, "baseline");
+  EXPECT_EQ(&kernels(), availableKernels().back());
+  for (const char* name : {"avx2", "avx512"}) {
+    const bool there = std::ranges::any_of(availableKernels(), [name](const Kernels* set) { return set->name == std::string(name); });
+    if (!there) std::cout << "this processor does not run the " << name << " kernels: not tested\n";
+  }
+}
+
+}  // namespace
+}  // namespace spoor::test

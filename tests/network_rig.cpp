@@ -1,0 +1,170 @@
+#include "tests/network_rig.h"
+
+#include <algorithm>
+
+#include "shared/base/hash.h"
+#include "shared/world/script.h"
+
+namespace spoor::test {
+namespace {
+
+constexpr int kStep_ms = 2;
+constexpr int kTick_ms = 16;
+
+ScenePack smallPack() {
+  ScenePack pack = noisePack(200, 150, 7, -20000, 20000, 50000);
+  addBody(pack, tetrahedronMesh(4000), 50000, 60000, 500);
+  addBody(pack, boxMesh(3000, 3000, 3000), 120000, 80000, 0);
+  return pack;
+}
+
+}  // namespace
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+ScriptedSession::ScriptedSession(bool rough) : ScriptedSession(smallPack()) { rough_ = rough; }
+
+ScriptedSession::ScriptedSession(ScenePack own_pack)
+    : pack(std::move(own_pack)), encoded_pack(encodePack(pack)), state(initialState(packId(encoded_pack), base)) {
+  hash_at[0] = stateHash(state);
+}
+
+TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) const {
+  const Tile* held = state.tiles.find(at);
+  auto tile = makeTile(at, base, tick);
+  if (held != nullptr) tile->height() = held->height();
+  const PlaneCells before = tile->height();
+  const std::uint64_t seed = mix64(std::uint64_t(tick) << 32 | std::uint64_t(at.y) << 16 | std::uint64_t(at.x));
+  for (int i = 0; i < rules::kTileCells; ++i) {
+    const std::uint64_t draw = mix64(seed + std::uint64_t(i));
+    if (rough_) tile->height()[std::size_t(i)] = std::int32_t(draw % 20000000) - 10000000;
+    else if (draw % 50 == 0) tile->height()[std::size_t(i)] += std::int32_t(draw >> 40) % 100 - 50;
+  }
+  tile->hash = tileHash(*tile);
+  tile->wake_mask = tick % 3 == 0 ? 0 : kWakeSelf;
+  return differenceOf(*tile, before, held == nullptr ? kDormantVersion : held->version_tick);
+}
+
+TickUpdate ScriptedSession::step() {
+  const std::int32_t tick = state.tick + 1;
+  const TileCoordinate extent = tileExtent(pack);
+  std::vector<TileChange> changes;
+  for (std::int32_t y = 0; y < extent.y; ++y) {
+    for (std::int32_t x = 0; x < extent.x; ++x) {
+      if (rough_ || (x + y + tick) % 4 == 0) changes.push_back(changeTile({x, y}, tick));
+    }
+  }
+  const Status status = applyTiles(state, base, changes);
+  EXPECT_TRUE(status) << status.error();
+  state.tick = tick;
+  state.previous_poses = std::move(state.poses);
+  state.poses = Script(base).poses(tick);
+  hash_at[tick] = stateHash(state);
+  return {tick, hash_at[tick], state.poses, encodeTiles(changes)};
+}
+
+std::vector<TransportEvent> Meddler::service(int wait_ms) {
+  auto events = inner_->service(wait_ms);
+  if (!change) return events;
+  std::erase_if(events, [this](TransportEvent& event) {
+    if (event.kind != TransportEvent::Kind::message) return false;
+    auto message = decodeMessage(event.bytes, Sender::server);
+    EXPECT_TRUE(message);
+    if (!change(*message)) return true;
+    event.bytes = *encodeMessage(*message);
+    return false;
+  });
+  return events;
+}
+
+void Player::say(const Message& message) { sayBytes(*encodeMessage(message)); }
+
+Rig::Rig(const InProcessNetwork::Conditions& conditions, ScriptedSession& with_session, const BookOptions& options)
+    : network(1234, conditions),
+      session(with_session),
+      server_transport(network.listen()),
+      book(*server_transport, session.pack, session.encoded_pack, options) {}
+
+Player& Rig::connect() {
+  auto client = network.connect();
+  auto player = std::make_unique<Player>();
+  player->transport = std::make_unique<Meddler>(std::move(client.transport));
+  player->server = client.server;
+  players.push_back(std::move(player));
+  return *players.back();
+}
+
+Player& Rig::join(const std::string& name) {
+  Player& player = connect();
+  player.follower = std::make_unique<Follower>(*player.transport, player.server, FollowerOptions{"rig:1", name, 10000},
+                                               network.nowMs());
+  return player;
+}
+
+void Rig::kill(Player& player) {
+  network.cut(player.transport->inner());
+  player.is_frozen = true;
+}
+
+void Rig::stepPlayers() {
+  for (auto& player : players) {
+    if (player->is_frozen) continue;
+    if (player->follower) {
+      const Status status = player->follower->update(network.nowMs(), 0);
+      if (!status) player->error = status.error();
+      continue;
+    }
+    for (const TransportEvent& event : player->transport->service(0)) {
+      if (event.kind == TransportEvent::Kind::disconnected) player->is_disconnected = true;
+      if (event.kind != TransportEvent::Kind::message) continue;
+      const auto message = decodeMessage(event.bytes, Sender::server);
+      ASSERT_TRUE(message) << message.error();
+      if (const auto* refused = std::get_if<Refused>(&*message)) player->refusal = refused->reason;
+    }
+  }
+}
+
+void Rig::run(int time_ms) {
+  for (int passed_ms = 0; passed_ms < time_ms; passed_ms += kStep_ms) {
+    network.advance(kStep_ms);
+    book.serve(network.nowMs(), 0);
+    for (PeerId peer = 1; peer <= players.size(); ++peer) {
+      most_bulk_outstanding = std::max(most_bulk_outstanding, server_transport->outstandingBytes(peer, Channel::bulk));
+    }
+    stepPlayers();
+  }
+}
+
+void Rig::runUntil(const std::function<bool()>& done, int limit_ms) {
+  for (int passed_ms = 0; passed_ms < limit_ms && !done(); passed_ms += kStep_ms) run(kStep_ms);
+  EXPECT_TRUE(done()) << "not within " << limit_ms << " ms";
+}
+
+void Rig::play(int tick_count) {
+  for (int i = 0; i < tick_count; ++i) {
+    book.publish(session.step());
+    run(kTick_ms);
+  }
+}
+
+std::vector<ClientReport> Rig::finish() {
+  book.sayGoodbye("over");
+  runUntil([this] { return book.allDone(); });
+  run(1000);
+  return book.reports();
+}
+
+void expectEqualState(const Player& player, const ScriptedSession& session) {
+  ASSERT_TRUE(player.follower->inSync());
+  const WorldState& held = player.follower->state();
+  EXPECT_EQ(held.tick, session.state.tick);
+  EXPECT_EQ(stateHash(held), stateHash(session.state));
+  EXPECT_TRUE(recount(held));
+  EXPECT_EQ(held.ledger, session.state.ledger);
+  for (const Tile* tile : session.state.tiles.sorted()) {
+    ASSERT_NE(held.tiles.find(tile->at), nullptr);
+    EXPECT_EQ(held.tiles.find(tile->at)->height(), tile->height());
+  }
+}
+
+}  // namespace spoor::test

@@ -1,0 +1,233 @@
+// A whole tick from DESIGN.md's description: what takes part, the sub-steps, what wakes, hash and ledger.
+#include "tests/oracle.h"
+
+#include <algorithm>
+
+#include "shaders/rules/mix.h"
+#include "shared/base/bytes.h"
+#include "shared/base/fixed.h"
+#include "shared/base/hash.h"
+
+namespace spoor::test {
+namespace {
+
+constexpr int kSize = rules::kTileSize;
+constexpr int kMostSubSteps = 32;
+
+}  // namespace
+
+Oracle::Oracle(const BaseTerrain& base, const PackId& id)
+    : base_(&base), id_(id), extent_(tileExtent(base.pack())), world_(base), base_height_(world_.height) {
+  const auto tiles = std::size_t(extent_.x) * std::size_t(extent_.y);
+  live_.assign(tiles, 0);
+  wake_.assign(tiles, 0);
+  poses_ = initialState(id, base).poses;
+  previous_poses_ = poses_;
+}
+
+/// The cells that a mesh's box meets, and one more on every side.
+Oracle::Box Oracle::searchBox(int body_index, const Pose& pose) const {
+  const OracleBody body = placeForOracle(base_->pack(), body_index, pose);
+  int x0 = INT32_MAX, y0 = INT32_MAX, x1 = INT32_MIN, y1 = INT32_MIN;
+  for (const auto& point : body.points) {
+    const int x = body.origin_x + int(floorDiv(point.x, rules::kSubcells));
+    const int y = body.origin_y + int(floorDiv(point.y, rules::kSubcells));
+    x0 = std::min(x0, x);
+    x1 = std::max(x1, x);
+    y0 = std::min(y0, y);
+    y1 = std::max(y1, y);
+  }
+  if (x1 < 0 || y1 < 0 || x0 >= world_.inside_columns || y0 >= world_.inside_rows) return {0, 0, 0, 0};
+  return {std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(x1 + 2, world_.inside_columns),
+          std::min(y1 + 2, world_.inside_rows)};
+}
+
+int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const {
+  const ScenePack& pack = base_->pack();
+  Pose start = from, end = to;
+  start.spin = end.spin = 0;
+  const Rotation before = rotationOf(start), after = rotationOf(end);
+  std::int64_t farthest = 0;
+  for (const auto& vertex : pack.meshes[std::size_t(pack.bodies[std::size_t(body_index)].mesh_index)].vertices) {
+    const auto a = rotate(before, vertex), b = rotate(after, vertex);
+    farthest = std::max(farthest, std::abs(std::int64_t(end.x_q) + b[0] - start.x_q - a[0]));
+    farthest = std::max(farthest, std::abs(std::int64_t(end.y_q) + b[1] - start.y_q - a[1]));
+  }
+  return int(std::clamp<std::int64_t>((farthest + pack.cell_q - 1) / pack.cell_q, 1, kMostSubSteps));
+}
+
+/// Boxes of the bodies that take part; boxes that overlap become the box of both, until none do.
+std::vector<Oracle::Box> Oracle::searchDomains(const std::vector<bool>& takes_part, const std::vector<Pose>& poses) const {
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Box box = takes_part[i] ? searchBox(int(i), poses[i]) : Box{0, 0, 0, 0};
+    if (!box.empty()) boxes.push_back(box);
+  }
+  for (bool joined = true; joined;) {
+    joined = false;
+    for (std::size_t i = 0; i < boxes.size() && !joined; ++i)
+      for (std::size_t j = i + 1; j < boxes.size() && !joined; ++j) {
+        const Box &a = boxes[i], &b = boxes[j];
+        if (a.x0 >= b.x1 || b.x0 >= a.x1 || a.y0 >= b.y1 || b.y0 >= a.y1) continue;
+        boxes[i] = {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+        boxes.erase(boxes.begin() + std::ptrdiff_t(j));
+        joined = true;
+      }
+  }
+  return boxes;
+}
+
+void Oracle::markTiles(const Box& box, std::vector<std::uint8_t>& tiles) const {
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x) tiles[tileIndex({x / kSize, y / kSize})] = 1;
+}
+
+bool Oracle::meetsTiles(const Box& box, const std::vector<std::uint8_t>& tiles) const {
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x)
+      if (tiles[tileIndex({x / kSize, y / kSize})] != 0) return true;
+  return false;
+}
+
+/// What changed last tick, and the neighbours that it reaches.
+std::vector<std::uint8_t> Oracle::wokenTiles() const {
+  std::vector<std::uint8_t> tiles(live_.size(), 0);
+  for (int y = 0; y < extent_.y; ++y)
+    for (int x = 0; x < extent_.x; ++x)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const bool named = (wake_[tileIndex({x, y})] >> ((dy + 1) * 3 + dx + 1) & 1) != 0;
+          const bool exists = x + dx >= 0 && y + dy >= 0 && x + dx < extent_.x && y + dy < extent_.y;
+          if (named && exists) tiles[tileIndex({x + dx, y + dy})] = 1;
+        }
+  return tiles;
+}
+
+std::vector<Pose> Oracle::posesOfSubStep(const std::vector<Pose>& poses, int step) const {
+  std::vector<Pose> result;
+  for (std::size_t i = 0; i < poses.size(); ++i) result.push_back(interpolate(poses_[i], poses[i], step, sub_steps_));
+  return result;
+}
+
+/// Active tiles: the woken ones, where moving bodies stood, every search domain of every sub-step. A body that stands
+/// still takes part once its own search box meets an active tile, which may make more tiles active, and so on.
+std::vector<std::uint8_t> Oracle::plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const {
+  std::vector<std::uint8_t> tiles = wokenTiles();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (takes_part[i]) markTiles(searchBox(int(i), poses_[i]), tiles);
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (int step = 1; step <= sub_steps_; ++step)
+      for (const Box& domain : searchDomains(takes_part, posesOfSubStep(poses, step))) markTiles(domain, tiles);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (!takes_part[i] && meetsTiles(searchBox(int(i), poses[i]), tiles)) takes_part[i] = grew = true;
+  }
+  return tiles;
+}
+
+void Oracle::setActive(const std::vector<std::uint8_t>& tiles) {
+  active_tiles_.clear();
+  for (int y = 0; y < world_.rows; ++y)
+    for (int x = 0; x < world_.columns; ++x) world_.active[world_.at(x, y)] = tiles[tileIndex({x / kSize, y / kSize})];
+  for (int y = 0; y < extent_.y; ++y)
+    for (int x = 0; x < extent_.x; ++x)
+      if (tiles[tileIndex({x, y})] != 0) {
+        active_tiles_.push_back({x, y});
+        live_[tileIndex({x, y})] = 1;
+      }
+}
+
+void Oracle::step(const std::vector<Pose>& poses) {
+  const ScenePack& pack = base_->pack();
+  std::vector<bool> takes_part(poses.size());
+  sub_steps_ = 1;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    takes_part[i] = tick_ == 0 || poses[i] != poses_[i];
+    if (takes_part[i]) sub_steps_ = std::max(sub_steps_, subStepsFor(int(i), poses_[i], poses[i]));
+  }
+  setActive(plan(poses, takes_part));
+  const std::vector<std::int32_t> before = world_.height;
+  crowded_.clear();
+  for (int step = 0; step < sub_steps_ && !active_tiles_.empty(); ++step) {
+    std::ranges::fill(world_.underside, rules::kNoUnderside);
+    const std::vector<Pose> now = posesOfSubStep(poses, step + 1);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (takes_part[i]) oracleDepth(world_, placeForOracle(pack, int(i), now[i]));
+    const auto overlap = oracleOverlap(world_, pack.obstacle_threshold_q);
+    crowded_ = oracleDisplace(world_, overlap, oracleNearest(world_, overlap), pack.obstacle_threshold_q);
+    const int sweeps = pack.sweeps_per_tick;
+    oracleRelax(world_, pack, (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
+  }
+  wake(before);
+  previous_poses_ = poses_;
+  poses_ = poses;
+  ++tick_;
+}
+
+/// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box of
+/// its changed cells.
+void Oracle::wake(const std::vector<std::int32_t>& before) {
+  const int reach = std::clamp(base_->pack().sweeps_per_tick, 1, kSize);
+  for (const TileCoordinate tile : active_tiles_) {
+    int x0 = kSize, y0 = kSize, x1 = -1, y1 = -1;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const std::size_t i = world_.at(tile.x * kSize + x, tile.y * kSize + y);
+        if (world_.height[i] == before[i]) continue;
+        x0 = std::min(x0, x);
+        x1 = std::max(x1, x);
+        y0 = std::min(y0, y);
+        y1 = std::max(y1, y);
+      }
+    WakeMask mask = 0;
+    for (int dy = -1; dy <= 1 && x1 >= 0; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const bool near_x = dx == 0 || (dx < 0 ? x0 : kSize - 1 - x1) < reach;
+        const bool near_y = dy == 0 || (dy < 0 ? y0 : kSize - 1 - y1) < reach;
+        if (near_x && near_y) mask = WakeMask(mask | 1 << ((dy + 1) * 3 + dx + 1));
+      }
+    wake_[tileIndex(tile)] = mask;
+  }
+}
+
+std::uint64_t Oracle::stateHash() const {
+  std::uint64_t sum = 0;
+  for (int y = 0; y < extent_.y; ++y)
+    for (int x = 0; x < extent_.x; ++x) {
+      if (!isLive({x, y})) continue;
+      for (int cell_y = y * kSize; cell_y < (y + 1) * kSize; ++cell_y)
+        for (int cell_x = x * kSize; cell_x < (x + 1) * kSize; ++cell_x) {
+          const std::int32_t height = world_.height[world_.at(cell_x, cell_y)];
+          const rules::uint key = rules::cellKey(cell_x, cell_y, int(Plane::height));
+          sum += rules::cellMixLow(key, height) + (std::uint64_t(rules::cellMixHigh(key, height)) << 32);
+        }
+      const std::uint64_t place = std::uint64_t(y) << 32 | std::uint64_t(x);
+      sum += mix64(mix64(place ^ 0x7f4a7c159e3779b9u) + wakeMask({x, y}));
+    }
+  ByteWriter rest;
+  rest.put(tick_);
+  rest.put(id_.low);
+  rest.put(id_.high);
+  rest.put(std::uint32_t(poses_.size()));
+  for (const auto* poses : {&poses_, &previous_poses_})
+    for (const Pose& pose : *poses) {
+      for (const std::int32_t value : {pose.x_q, pose.y_q, pose.z_q}) rest.put(value);
+      for (const Turn turn : {pose.yaw, pose.pitch, pose.roll, pose.spin}) rest.put(turn);
+    }
+  return sum + hashBytes(rest.bytes);
+}
+
+Ledger Oracle::ledger() const {
+  Ledger ledger;
+  for (int y = 0; y < world_.rows; ++y)
+    for (int x = 0; x < world_.columns; ++x) {
+      if (!isLive({x / kSize, y / kSize})) continue;
+      ledger.initial += base_height_[world_.at(x, y)];
+      ledger.ground += world_.height[world_.at(x, y)];
+    }
+  return ledger;
+}
+
+std::size_t Oracle::liveCount() const { return std::size_t(std::ranges::count(live_, std::uint8_t(1))); }
+
+}  // namespace spoor::test

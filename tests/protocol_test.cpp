@@ -1,0 +1,307 @@
+// Frames, messages and bulk: what goes through comes out, and nothing else goes through.
+#include <gtest/gtest.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <random>
+
+#include "protocol/bulk.h"
+#include "protocol/messages.h"
+#include "protocol/zstd_codec.h"
+
+namespace spoor {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes noise(std::size_t size, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  Bytes bytes(size);
+  for (auto& byte : bytes) byte = std::uint8_t(random());
+  return bytes;
+}
+
+TickUpdate sampleTick(std::size_t tile_bytes) {
+  return {77, 0x1234567890abcdefu, {{1, -2, 3, 4, 5, 6, 7}, {-8, 9, -10, 11, 12, 13, 65535}}, Bytes(tile_bytes, 9)};
+}
+
+std::vector<Message> samples() {
+  return {Hello{kProtocolVersion, "viewer 1"},
+          Welcome{kProtocolVersion, {~std::uint64_t(0), 2}, 12, 3456, 60},
+          PackRequest{},
+          SnapshotRequest{SnapshotCause::hash_mismatch},
+          BulkChunk{BulkKind::snapshot, true, 100, 50, 10, noise(40)},
+          sampleTick(4000),
+          Confirm{5, 0xfedcba9876543210u},
+          Goodbye{"over", 600},
+          Refused{2, "no"}};
+}
+
+Sender senderOf(const Message& message) { return ruleOf(kindOf(message)).from; }
+
+bool equal(const Message& a, const Message& b) {
+  if (a.index() != b.index()) return false;
+  return std::visit(
+      [&]<typename T>(const T& first) {
+        const T& second = std::get<T>(b);
+        if constexpr (std::is_same_v<T, TickUpdate>) {
+          return first.tick == second.tick && first.state_hash == second.state_hash && first.poses == second.poses &&
+                 first.tiles == second.tiles;
+        } else {
+          return first == second;
+        }
+      },
+      a);
+}
+
+/// A frame with any header: `size_stated` and flags need not be true.
+Bytes rawFrame(MessageKind kind, std::uint16_t flags, std::uint32_t size_stated, const Bytes& payload) {
+  Bytes frame{'S', 'p', kFrameVersion, std::uint8_t(kind), std::uint8_t(flags), std::uint8_t(flags >> 8)};
+  for (int byte = 0; byte < 4; ++byte) frame.push_back(std::uint8_t(size_stated >> (8 * byte)));
+  frame.insert(frame.end(), payload.begin(), payload.end());
+  return frame;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Messages, EveryKindGoesRoundTrip) {
+  ASSERT_EQ(samples().size(), std::size_t(kMessageKindCount));
+  for (const Message& message : samples()) {
+    const auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    const auto decoded = decodeMessage(*frame, senderOf(message));
+    ASSERT_TRUE(decoded) << decoded.error();
+    EXPECT_TRUE(equal(message, *decoded)) << toText(kindOf(message));
+    const auto again = encodeMessage(*decoded);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(*frame, *again) << toText(kindOf(message));
+  }
+}
+
+TEST(Messages, DecodeRejectsEveryTruncation) {
+  for (const Message& message : samples()) {
+    const auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    for (std::size_t size = 0; size < frame->size(); ++size) {
+      EXPECT_FALSE(decodeMessage(std::span(*frame).first(size), senderOf(message))) << toText(kindOf(message)) << size;
+    }
+  }
+}
+
+TEST(Messages, DecodeRejectsATrailingByte) {
+  for (const Message& message : samples()) {
+    auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    frame->push_back(0);
+    EXPECT_FALSE(decodeMessage(*frame, senderOf(message))) << toText(kindOf(message));
+  }
+}
+
+TEST(Messages, DecodeRejectsTheWrongSide) {
+  for (const Message& message : samples()) {
+    const auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    const Sender other = senderOf(message) == Sender::client ? Sender::server : Sender::client;
+    EXPECT_FALSE(decodeMessage(*frame, other)) << toText(kindOf(message));
+  }
+}
+
+TEST(Messages, ValuesOutOfRangeAreRejected) {
+  const std::vector<Message> wrong = {
+      Welcome{1, {}, -1, 10, 60},
+      Welcome{1, {}, 0, 0, 60},
+      Welcome{1, {}, 0, kPackBytesLimit + 1, 60},
+      Welcome{1, {}, 0, 10, 0},
+      SnapshotRequest{SnapshotCause(9)},
+      BulkChunk{BulkKind(7), true, 100, 50, 0, Bytes(10)},
+      BulkChunk{BulkKind::pack, true, kPackBytesLimit + 1, 50, 0, Bytes(10)},
+      BulkChunk{BulkKind::pack, false, 100, 50, 0, Bytes(10)},
+      BulkChunk{BulkKind::pack, false, 50, 50, 41, Bytes(10)},
+      BulkChunk{BulkKind::pack, false, 50, 50, ~std::uint64_t(0), Bytes(10)},
+      TickUpdate{0, 0, {}, {}},
+      Confirm{-1, 0},
+      Goodbye{"over", -1},
+  };
+  for (const Message& message : wrong) {
+    const auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    EXPECT_FALSE(decodeMessage(*frame, senderOf(message))) << toText(kindOf(message));
+  }
+}
+
+TEST(Messages, TextsAreCleanedOnTheWayOut) {
+  const auto frame = encodeMessage(Hello{1, "line\nbreak" + std::string(100, 'x')});
+  ASSERT_TRUE(frame);
+  const auto decoded = decodeMessage(*frame, Sender::client);
+  ASSERT_TRUE(decoded) << decoded.error();
+  EXPECT_EQ(std::get<Hello>(*decoded).name.substr(0, 10), "line?break");
+  EXPECT_EQ(std::get<Hello>(*decoded).name.size(), kNameLimit);
+}
+
+TEST(Messages, AnUnprintableNameIsRejected) {
+  auto frame = encodeMessage(Hello{1, "viewer"});
+  ASSERT_TRUE(frame);
+  const auto at = std::search(frame->begin(), frame->end(), std::begin("viewer"), std::begin("viewer") + 6);
+  ASSERT_NE(at, frame->end());
+  *at = '\x1b';
+  EXPECT_FALSE(decodeMessage(*frame, Sender::client));
+}
+
+TEST(Frame, DecodeRejectsABadHeader) {
+  const auto good = encodeMessage(PackRequest{});
+  ASSERT_TRUE(good);
+  const auto with = [&](std::size_t at, std::uint8_t value) {
+    Bytes frame = *good;
+    frame[at] = value;
+    return decodeMessage(frame, Sender::client);
+  };
+  EXPECT_TRUE(with(0, 'S'));
+  EXPECT_FALSE(with(0, 'T'));
+  EXPECT_FALSE(with(1, 'P'));
+  EXPECT_TRUE(contains(with(2, 9).error(), "version 9, this is 1"));
+  EXPECT_TRUE(contains(with(3, kMessageKindCount).error(), "unknown kind"));
+  EXPECT_TRUE(contains(with(4, 2).error(), "unknown flags"));
+  EXPECT_TRUE(contains(with(4, 1).error(), "a compressed pack request"));
+}
+
+TEST(Frame, SizesOverTheLimitAreRejectedBothWays) {
+  for (std::uint8_t number = 0; number < kMessageKindCount; ++number) {
+    const auto kind = MessageKind(number);
+    const KindRule& rule = ruleOf(kind);
+    const auto over_raw = std::uint32_t(rule.raw_limit_bytes + 1);
+    EXPECT_FALSE(decodeFrame(rawFrame(kind, 0, over_raw, {}), rule.from)) << toText(kind);
+    const auto over_stored = std::uint32_t(rule.stored_limit_bytes + 1);
+    EXPECT_FALSE(decodeFrame(rawFrame(kind, 0, over_stored, Bytes(over_stored)), rule.from)) << toText(kind);
+    EXPECT_FALSE(encodeFrame(kind, Bytes(over_raw))) << toText(kind);
+  }
+  const std::size_t stored_limit = ruleOf(MessageKind::tick_update).stored_limit_bytes;
+  EXPECT_FALSE(encodeMessage(TickUpdate{1, 0, {}, noise(stored_limit)})) << "more than may be sent, even compressed";
+}
+
+TEST(Frame, TickUpdatesAreCompressedWhereItHelps) {
+  const auto helped = encodeMessage(sampleTick(4000));
+  ASSERT_TRUE(helped);
+  EXPECT_LT(helped->size(), 200u);
+  auto tick = sampleTick(0);
+  tick.tiles = noise(4000);
+  const auto plain = encodeMessage(tick);
+  ASSERT_TRUE(plain);
+  EXPECT_EQ((*plain)[4], 0);
+}
+
+TEST(Zstd, ABombIsNotUnpacked) {
+  const Bytes zeros(std::size_t(200) << 20);
+  const Bytes bomb = zstdCompress(zeros);
+  ASSERT_LT(bomb.size(), std::size_t(64) << 10);
+  const auto kind = MessageKind::tick_update;
+  const auto honest = decodeFrame(rawFrame(kind, kFrameCompressed, std::uint32_t(zeros.size()), bomb), Sender::server);
+  EXPECT_TRUE(contains(honest.error(), "are allowed")) << honest.error();
+  const auto lying = decodeFrame(rawFrame(kind, kFrameCompressed, 1000, bomb), Sender::server);
+  EXPECT_TRUE(contains(lying.error(), "announced were 1000")) << lying.error();
+}
+
+TEST(Zstd, AFrameThatStatesTooLittleIsRejected) {
+  // Two frames, each honest; together more than announced. And one frame followed by a skippable one.
+  const Bytes one = zstdCompress(Bytes(1000, 3));
+  Bytes two = one;
+  two.insert(two.end(), one.begin(), one.end());
+  EXPECT_FALSE(zstdDecompress(two, 1000));
+  EXPECT_FALSE(zstdDecompress(two, 2000));
+  Bytes skippable = one;
+  for (const int byte : {0x50, 0x2a, 0x4d, 0x18, 0, 0, 0, 0}) skippable.push_back(std::uint8_t(byte));
+  EXPECT_FALSE(zstdDecompress(skippable, 1000));
+  EXPECT_TRUE(zstdDecompress(one, 1000));
+}
+
+TEST(Zstd, AFrameWithoutContentSizeIsRejected) {
+  const Bytes raw(1000, 3);
+  ZSTD_CCtx* context = ZSTD_createCCtx();
+  ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, 0);
+  Bytes stored(ZSTD_compressBound(raw.size()));
+  stored.resize(ZSTD_compress2(context, stored.data(), stored.size(), raw.data(), raw.size()));
+  ZSTD_freeCCtx(context);
+  EXPECT_TRUE(contains(zstdDecompress(stored, 1000).error(), "does not state"));
+}
+
+TEST(Zstd, EveryTruncationIsRejected) {
+  const Bytes stored = zstdCompress(noise(300));
+  for (std::size_t size = 0; size < stored.size(); ++size) {
+    EXPECT_FALSE(zstdDecompress(std::span(stored).first(size), 300));
+  }
+}
+
+TEST(Fuzz, RandomBytesAreNoMessage) {
+  std::mt19937_64 random(20240607);
+  for (int i = 0; i < 20000; ++i) {
+    Bytes bytes = noise(random() % 200, random());
+    if (bytes.size() > 3 && i % 2 == 0) {
+      bytes[0] = 'S', bytes[1] = 'p', bytes[2] = kFrameVersion, bytes[3] %= kMessageKindCount;
+    }
+    EXPECT_FALSE(decodeMessage(bytes, i % 4 < 2 ? Sender::client : Sender::server));
+  }
+}
+
+TEST(Fuzz, ChangedMessagesAreRejectedOrValid) {
+  std::mt19937_64 random(99);
+  auto messages = samples();
+  messages.push_back(sampleTick(8));  // too small to be compressed: the changes reach the table
+  int valid = 0;
+  for (const Message& message : messages) {
+    const auto frame = encodeMessage(message);
+    ASSERT_TRUE(frame);
+    for (int i = 0; i < 3000; ++i) {
+      Bytes changed = *frame;
+      for (std::uint64_t count = 1 + random() % 4; count > 0; --count) {
+        changed[random() % changed.size()] = std::uint8_t(random());
+      }
+      const auto decoded = decodeMessage(changed, senderOf(message));
+      if (!decoded) continue;
+      ++valid;
+      EXPECT_TRUE(encodeMessage(*decoded));  // whatever passed holds only values that may be sent
+    }
+  }
+  EXPECT_GT(valid, 0);
+}
+
+TEST(Bulk, PackagesGoRoundTripInChunks) {
+  for (const Bytes& raw : {noise(200000), Bytes(200000, 4), Bytes(1, 4)}) {
+    const BulkPackage package = makeBulkPackage(BulkKind::snapshot, raw);
+    BulkAssembler assembler(BulkKind::snapshot);
+    for (std::uint64_t offset = 0; offset < package.stored.size(); offset += kBulkChunkBytes) {
+      EXPECT_FALSE(assembler.complete());
+      ASSERT_TRUE(assembler.add(chunkAt(package, offset)));
+    }
+    ASSERT_TRUE(assembler.complete());
+    const auto unpacked = assembler.unpack();
+    ASSERT_TRUE(unpacked) << unpacked.error();
+    EXPECT_EQ(*unpacked, raw);
+  }
+}
+
+TEST(Bulk, ChunksThatDoNotFitAreRejected) {
+  const BulkPackage package = makeBulkPackage(BulkKind::pack, noise(100000));
+  const auto afterFirst = [&] {
+    BulkAssembler assembler(BulkKind::pack);
+    EXPECT_TRUE(assembler.add(chunkAt(package, 0)));
+    return assembler;
+  };
+  EXPECT_FALSE(BulkAssembler(BulkKind::snapshot).add(chunkAt(package, 0))) << "of the wrong kind";
+  EXPECT_FALSE(BulkAssembler(BulkKind::pack).add(chunkAt(package, kBulkChunkBytes))) << "not the first";
+  EXPECT_FALSE(afterFirst().add(chunkAt(package, 0))) << "the first again";
+  EXPECT_FALSE(afterFirst().add(chunkAt(package, 2 * kBulkChunkBytes))) << "one left out";
+  BulkChunk other_size = chunkAt(package, kBulkChunkBytes);
+  other_size.raw_bytes = ++other_size.stored_bytes;
+  EXPECT_FALSE(afterFirst().add(other_size));
+}
+
+TEST(Bulk, AWholeThatUnpacksToAnotherSizeIsRejected) {
+  BulkPackage package = makeBulkPackage(BulkKind::pack, Bytes(100000, 5));
+  package.raw_bytes = 50000;
+  BulkAssembler assembler(BulkKind::pack);
+  ASSERT_TRUE(assembler.add(chunkAt(package, 0)));
+  ASSERT_TRUE(assembler.complete());
+  EXPECT_FALSE(assembler.unpack());
+}
+
+}  // namespace
+}  // namespace spoor

@@ -1,0 +1,203 @@
+// The session file: record, replay, and every way to be cut off or damaged.
+#include "shared/codec/session.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "shared/world/script.h"
+#include "tests/scenes.h"
+
+namespace spoor::test {
+namespace {
+
+/// A body that drives 30 cells across level ground.
+ScenePack drivePack() {
+  ScenePack pack = flatPack(70, 30);
+  addBody(pack, boxMesh(4000, 3000, 2000), 10000, 15000, 700);
+  pack.paths[0] = {{{10000, 15000}, {40000, 15000}}, 1300, 0, 0};
+  return pack;
+}
+
+using Bytes = std::vector<std::uint8_t>;
+
+class Session : public ::testing::Test {
+ protected:
+  static constexpr int kTicks = 12;
+  World world_{drivePack()};
+  std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) /
+                                ("spoor_session_" + std::to_string(getpid()) + ".sprs");
+
+  ~Session() override { std::filesystem::remove(path_); }
+
+  /// Records a session; returns its hashes.
+  std::vector<std::uint64_t> record() {
+    auto writer = SessionWriter::create(path_.string(), encodePack(world_.pack));
+    EXPECT_TRUE(writer) << writer.error();
+    Simulation simulation = world_.simulate();
+    const Script script(world_.base);
+    std::vector<std::uint64_t> hashes;
+    for (int tick = 1; tick <= kTicks; ++tick) {
+      const auto result = simulation.step(script.poses(tick));
+      EXPECT_TRUE(result) << result.error();
+      (*writer)->append({tick, result->update.poses, result->update.state_hash, simulation.state().ledger});
+      hashes.push_back(result->update.state_hash);
+    }
+    const Status status = (*writer)->close();
+    EXPECT_TRUE(status) << status.error();
+    return hashes;
+  }
+  Bytes read() const {
+    std::ifstream file(path_, std::ios::binary);
+    return Bytes(std::istreambuf_iterator<char>(file), {});
+  }
+  void write(std::span<const std::uint8_t> bytes) const {
+    std::ofstream file(path_, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  }
+
+  struct Reading {
+    std::string error;  // of opening, or of a record
+    int ticks = 0;
+    bool truncated = false;
+  };
+  Reading readAll() const {
+    Reading reading;
+    auto reader = SessionReader::open(path_.string());
+    if (!reader) return {reader.error(), 0, false};
+    for (;;) {
+      auto tick = (*reader)->next();
+      if (!tick) reading.error = tick.error();
+      if (!tick || !*tick) break;
+      ++reading.ticks;
+    }
+    reading.truncated = (*reader)->truncated();
+    return reading;
+  }
+  /// Where each record begins; the last entry is the end of the file.
+  static std::vector<std::size_t> recordStarts(const Bytes& bytes) {
+    std::vector<std::size_t> starts = {8};
+    while (starts.back() < bytes.size()) {
+      const std::size_t at = starts.back();
+      const std::size_t payload = bytes[at] | std::size_t(bytes[at + 1]) << 8 | std::size_t(bytes[at + 2]) << 16;
+      starts.push_back(at + 4 + 1 + payload + 8);
+    }
+    return starts;
+  }
+};
+
+TEST_F(Session, AReplayOfTheFileHasTheRecordedHashesAndLedgers) {
+  const auto hashes = record();
+  auto reader = SessionReader::open(path_.string());
+  ASSERT_TRUE(reader) << reader.error();
+  EXPECT_EQ((*reader)->id(), world_.id);
+  EXPECT_EQ(encodePack((*reader)->pack()), encodePack(world_.pack));
+  const BaseTerrain base((*reader)->pack());
+  Simulation replay(base, (*reader)->id(), makeNativeBackend({.thread_count = 2}));
+  for (int tick = 1; tick <= kTicks; ++tick) {
+    const auto record = (*reader)->next();
+    ASSERT_TRUE(record) << record.error();
+    ASSERT_TRUE(record->has_value());
+    EXPECT_EQ((*record)->tick, tick);
+    EXPECT_EQ((*record)->state_hash, hashes[std::size_t(tick - 1)]);
+    const auto result = replay.step((*record)->poses);
+    ASSERT_TRUE(result) << result.error();
+    EXPECT_EQ(result->update.state_hash, (*record)->state_hash);
+    EXPECT_EQ(replay.state().ledger, (*record)->ledger);
+  }
+  const auto end = (*reader)->next();
+  ASSERT_TRUE(end);
+  EXPECT_FALSE(end->has_value());
+  EXPECT_FALSE((*reader)->truncated());
+}
+
+TEST_F(Session, AFileCutOffAnywhereGivesItsWholeTicks) {
+  record();
+  const Bytes bytes = read();
+  const auto starts = recordStarts(bytes);
+  ASSERT_EQ(starts.size(), std::size_t(kTicks + 2));
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    write(std::span(bytes).first(size));
+    const Reading reading = readAll();
+    if (size < starts[1]) {
+      ASSERT_FALSE(reading.error.empty()) << size << ": no whole pack";
+      continue;
+    }
+    const auto whole = std::ranges::upper_bound(starts, size) - starts.begin() - 2;
+    ASSERT_EQ(reading.error, "") << size;
+    ASSERT_EQ(reading.ticks, whole) << size;
+    ASSERT_EQ(reading.truncated, !std::ranges::binary_search(starts, size)) << size;
+  }
+}
+
+TEST_F(Session, ADamagedByteIsLocated) {
+  record();
+  const Bytes bytes = read();
+  const auto starts = recordStarts(bytes);
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    if (at > starts[1] && at < starts[kTicks - 1] && at % 7 != 0) continue;  // the records are all alike
+    Bytes damaged = bytes;
+    damaged[at] ^= std::uint8_t(1 << at % 8);
+    write(damaged);
+    const Reading reading = readAll();
+    const auto record = std::ranges::upper_bound(starts, at) - starts.begin() - 1;
+    if (at < starts[1]) {
+      ASSERT_FALSE(reading.error.empty()) << "byte " << at;
+      continue;
+    }
+    // What comes before the damage is read; a size that reaches past the end looks like a file cut off there.
+    ASSERT_EQ(reading.ticks, record - 1) << "byte " << at;
+    if (reading.error.empty()) {
+      ASSERT_TRUE(reading.truncated && at < starts[std::size_t(record)] + 4) << "byte " << at;
+    } else {
+      ASSERT_NE(reading.error.find("byte " + std::to_string(starts[std::size_t(record)]) + ":"), std::string::npos) << reading.error;
+    }
+  }
+}
+
+TEST_F(Session, AMissingOrRepeatedTickIsReported) {
+  record();
+  const Bytes bytes = read();
+  const auto starts = recordStarts(bytes);
+  Bytes missing = bytes;
+  missing.erase(missing.begin() + std::ptrdiff_t(starts[3]), missing.begin() + std::ptrdiff_t(starts[4]));
+  write(missing);
+  EXPECT_NE(readAll().error.find("tick 4 follows tick 2"), std::string::npos) << readAll().error;
+  Bytes repeated = bytes;
+  repeated.insert(repeated.begin() + std::ptrdiff_t(starts[4]), bytes.begin() + std::ptrdiff_t(starts[3]), bytes.begin() + std::ptrdiff_t(starts[4]));
+  write(repeated);
+  EXPECT_NE(readAll().error.find("tick 3 follows tick 3"), std::string::npos) << readAll().error;
+}
+
+TEST_F(Session, WhatIsNoSessionFileIsNamed) {
+  EXPECT_NE(readAll().error.find("cannot be opened"), std::string::npos);
+  write(Bytes(100, 0));
+  EXPECT_NE(readAll().error.find("not a Spoor session"), std::string::npos);
+  record();
+  Bytes bytes = read();
+  bytes[4] = 9;
+  write(bytes);
+  EXPECT_NE(readAll().error.find("format 9"), std::string::npos);
+}
+
+TEST_F(Session, ASizeThatLiesCostsNothing) {
+  record();
+  Bytes bytes = read();
+  bytes[11] = 0xff;  // the pack record claims 4 GB
+  write(bytes);
+  EXPECT_NE(readAll().error.find("over the limit"), std::string::npos) << readAll().error;
+}
+
+TEST_F(Session, AFileThatCannotBeWrittenIsAnError) {
+  EXPECT_FALSE(SessionWriter::create("/nonexistent/spoor.sprs", encodePack(world_.pack)));
+  if (std::filesystem::exists("/dev/full")) {
+    auto writer = SessionWriter::create("/dev/full", encodePack(world_.pack));
+    EXPECT_FALSE(writer);
+  }
+}
+
+}  // namespace
+}  // namespace spoor::test
