@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -20,7 +19,9 @@ constexpr double kCrease_deg = 40.0;
 constexpr int kShadowSide_px = 2048;
 constexpr double kShadowReach_m = 60.0;
 
-glm::dvec3 positionOf(const Pose& pose) { return glm::dvec3(pose.x_q, pose.y_q, pose.z_q) / double(rules::kUnitsPerMetre); }
+glm::dvec3 positionOf(const Pose& pose) {
+  return glm::dvec3(pose.x_q, pose.y_q, pose.z_q) / double(rules::kUnitsPerMetre);
+}
 
 glm::mat4 placeOf(const Pose& pose, const CameraFrame& frame) {
   const Rotation rotation = rotationOf(pose);
@@ -35,9 +36,9 @@ glm::mat4 placeOf(const Pose& pose, const CameraFrame& frame) {
 
 /// Rubber for what rolls or walks, and one paint for all other bodies on the same path.
 glm::vec4 paintOf(const Body& body) {
-  static constexpr std::array<glm::vec4, 6> kPaints{glm::vec4(0.62f, 0.06f, 0.05f, 0.7f), glm::vec4(0.05f, 0.20f, 0.48f, 0.7f),
-                                                    glm::vec4(0.75f, 0.42f, 0.03f, 0.7f), glm::vec4(0.06f, 0.32f, 0.16f, 0.7f),
-                                                    glm::vec4(0.45f, 0.45f, 0.48f, 0.7f), glm::vec4(0.30f, 0.08f, 0.36f, 0.7f)};
+  static constexpr std::array<glm::vec4, 6> kPaints{
+      glm::vec4(0.62f, 0.06f, 0.05f, 0.7f), glm::vec4(0.05f, 0.20f, 0.48f, 0.7f), glm::vec4(0.75f, 0.42f, 0.03f, 0.7f),
+      glm::vec4(0.06f, 0.32f, 0.16f, 0.7f), glm::vec4(0.45f, 0.45f, 0.48f, 0.7f), glm::vec4(0.30f, 0.08f, 0.36f, 0.7f)};
   if (body.roll_radius_q > 0) return {0.035f, 0.035f, 0.04f, 0.12f};
   if (body.stride_q > 0) return {0.16f, 0.10f, 0.06f, 0.2f};
   return kPaints[std::size_t(body.path_index) % kPaints.size()];
@@ -57,7 +58,8 @@ BodyRenderer::BodyRenderer(const ScenePack& pack) : pack_(&pack) {
   for (const Body& body : pack.bodies) paint_.push_back(paintOf(body));
 
   points_ = makeBuffer();
-  if (!points.empty()) glNamedBufferStorage(points_.name(), GLsizeiptr(points.size() * sizeof(SurfacePoint)), points.data(), 0);
+  if (!points.empty())
+    glNamedBufferStorage(points_.name(), GLsizeiptr(points.size() * sizeof(SurfacePoint)), points.data(), 0);
   layout_ = makeVertexArray();
   glVertexArrayVertexBuffer(layout_.name(), 0, points_.name(), 0, sizeof(SurfacePoint));
   for (GLuint attribute = 0; attribute < 2; ++attribute) {

@@ -17,8 +17,8 @@ class BodyRenderer {
 
   /// A matrix to the shadow map that covers the bodies within `reach_m` of the focus; everything lies outside it where
   /// there are none. `texel_m` becomes the side of a texel on the ground.
-  glm::mat4 shadowMatrix(std::span<const Pose> poses, const CameraFrame& frame, const Camera& camera, const glm::dvec3& sun,
-                         float& texel_m) const;
+  glm::mat4 shadowMatrix(std::span<const Pose> poses, const CameraFrame& frame, const Camera& camera,
+                         const glm::dvec3& sun, float& texel_m) const;
 
   /// Fills the shadow map. The frame block must be bound. Leaves framebuffer, viewport and depth test changed.
   void drawShadows(std::span<const Pose> poses, const CameraFrame& frame) const;

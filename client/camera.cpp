@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "shaders/rules/limits.h"
@@ -14,7 +13,7 @@ namespace {
 
 constexpr float kNear_m = 0.1f;
 constexpr double kOrthographicDepth_m = 8000.0;  // how far beyond the eye an orthographic view reaches
-constexpr double kEyeLimit_m = 1.0e5;             // |z| of the eye, so that the origin's height fits its integer
+constexpr double kEyeLimit_m = 1.0e5;            // |z| of the eye, so that the origin's height fits its integer
 
 /// Perspective without a far plane: 32-bit float depth that runs from 1 at the near plane to 0 at infinity.
 glm::mat4 endlessPerspective(double field_of_view_rad, double aspect) {
@@ -63,16 +62,17 @@ CameraFrame frameOf(const Camera& camera, double cell_m, int width_px, int heigh
   const double aspect = double(width_px) / height_px;
   const double view_rad = glm::radians(camera.field_of_view_deg);
   const glm::mat4 view(glm::lookAt(eye_rel, eye_rel + camera.forward, camera.up));
-  frame.clip_from_rel = (frame.orthographic ? orthographic(camera.orthographic_height_m, aspect)
-                                            : endlessPerspective(view_rad, aspect)) * view;
+  frame.clip_from_rel =
+      (frame.orthographic ? orthographic(camera.orthographic_height_m, aspect) : endlessPerspective(view_rad, aspect)) *
+      view;
   const glm::dvec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
   const double half_height = frame.orthographic ? camera.orthographic_height_m / 2.0 : std::tan(view_rad / 2.0);
   frame.ray_forward = glm::vec3(camera.forward);
   frame.ray_right = glm::vec3(right * half_height * aspect);
   frame.ray_up = glm::vec3(glm::cross(right, camera.forward) * half_height);
   frame.depth_range_m = frame.orthographic ? float(kOrthographicDepth_m) : kNear_m;
-  frame.pixels_per_radian = frame.orthographic ? float(height_px / camera.orthographic_height_m)
-                                               : float(height_px / (2.0 * half_height));
+  frame.pixels_per_radian =
+      frame.orthographic ? float(height_px / camera.orthographic_height_m) : float(height_px / (2.0 * half_height));
   return frame;
 }
 

@@ -1,12 +1,11 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cstring>
 #include <string_view>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "client/gl_context.h"
 
@@ -18,15 +17,24 @@ constexpr EGLint kDeviceLimit = 16;
 
 const char* eglErrorName() {
   switch (eglGetError()) {
-    case EGL_NOT_INITIALIZED: return "EGL_NOT_INITIALIZED";
-    case EGL_BAD_ALLOC: return "EGL_BAD_ALLOC";
-    case EGL_BAD_ATTRIBUTE: return "EGL_BAD_ATTRIBUTE";
-    case EGL_BAD_CONFIG: return "EGL_BAD_CONFIG";
-    case EGL_BAD_MATCH: return "EGL_BAD_MATCH";
-    case EGL_BAD_DISPLAY: return "EGL_BAD_DISPLAY";
-    case EGL_BAD_PARAMETER: return "EGL_BAD_PARAMETER";
-    case EGL_SUCCESS: return "no EGL error given";
-    default: return "another EGL error";
+    case EGL_NOT_INITIALIZED:
+      return "EGL_NOT_INITIALIZED";
+    case EGL_BAD_ALLOC:
+      return "EGL_BAD_ALLOC";
+    case EGL_BAD_ATTRIBUTE:
+      return "EGL_BAD_ATTRIBUTE";
+    case EGL_BAD_CONFIG:
+      return "EGL_BAD_CONFIG";
+    case EGL_BAD_MATCH:
+      return "EGL_BAD_MATCH";
+    case EGL_BAD_DISPLAY:
+      return "EGL_BAD_DISPLAY";
+    case EGL_BAD_PARAMETER:
+      return "EGL_BAD_PARAMETER";
+    case EGL_SUCCESS:
+      return "no EGL error given";
+    default:
+      return "another EGL error";
   }
 }
 
@@ -63,15 +71,15 @@ class HeadlessContext final : public GlContext {
       return Error{fmt::format("EGL {}.{} without EGL_KHR_surfaceless_context", major, minor)};
     EGLConfig config = EGL_NO_CONFIG_KHR;
     if (!listed(extensions, "EGL_KHR_no_config_context")) {
-      const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+      const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                         EGL_NONE};
       EGLint count = 0;
       if (!eglChooseConfig(display_, wanted.data(), &config, 1, &count) || count < 1)
         return Error{fmt::format("EGL {}.{} without a config for OpenGL", major, minor)};
     }
-    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION,       4,
-                                           EGL_CONTEXT_MINOR_VERSION,       5,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                           EGL_NONE};
+    const std::array<EGLint, 7> attributes{
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT) return Error{fmt::format("no OpenGL 4.5 core ({})", eglErrorName())};
     if (!makeCurrent()) return Error{fmt::format("the context cannot be made current ({})", eglErrorName())};
@@ -103,8 +111,8 @@ std::vector<Platform> platforms(const char* client_extensions) {
   if (!listed(client_extensions, "EGL_EXT_platform_base")) return found;
   if (listed(client_extensions, "EGL_MESA_platform_surfaceless"))
     found.push_back({"EGL surfaceless", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr)});
-  const bool devices = listed(client_extensions, "EGL_EXT_device_base") ||
-                       listed(client_extensions, "EGL_EXT_device_enumeration");
+  const bool devices =
+      listed(client_extensions, "EGL_EXT_device_base") || listed(client_extensions, "EGL_EXT_device_enumeration");
   if (devices && listed(client_extensions, "EGL_EXT_platform_device")) {
     std::array<EGLDeviceEXT, kDeviceLimit> handles{};
     EGLint count = 0;

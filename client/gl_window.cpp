@@ -2,7 +2,6 @@
 // After epoxy, which replaces the system's GL header.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-
 #include <fmt/format.h>
 
 #include "client/gl_context.h"

@@ -1,9 +1,9 @@
 #include "client/headless_run.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "client/recording.h"
 #include "client/views.h"
@@ -52,7 +52,9 @@ Status runHeadless(ClientSession& session, const HeadlessOptions& options) {
   const RenderSettings& settings = options.render;
   const Camera above = aboveView(view, double(settings.width_px) / settings.height_px);
   Renderer renderer(session.pack(), settings);
-  if (const Status s = drawAndWrite(renderer, view, trailsView(view, settings.sun_azimuth_deg), fileOf("trails.png")); !s) return s;
+  if (const Status s = drawAndWrite(renderer, view, trailsView(view, settings.sun_azimuth_deg), fileOf("trails.png"));
+      !s)
+    return s;
   if (has_bodies)
     if (const Status s = drawAndWrite(renderer, view, followView(view, 0), fileOf("follow.png")); !s) return s;
   if (const Status s = drawAndWrite(renderer, view, above, fileOf("above.png")); !s) return s;

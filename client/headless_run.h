@@ -8,8 +8,8 @@
 namespace spoor {
 
 struct HeadlessOptions {
-  int frame_count = 0;     // pictures of the follow camera, spread over the session
-  std::string folder;      // where pictures go; made where missing
+  int frame_count = 0;  // pictures of the follow camera, spread over the session
+  std::string folder;   // where pictures go; made where missing
   RenderSettings render;
 };
 

@@ -1,11 +1,11 @@
 // spoor-client: joins a session, follows it, checks it, and shows it in a window or as pictures.
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cstdio>
 #include <exception>
 #include <optional>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "client/gl_context.h"
 #include "client/headless_run.h"
@@ -33,14 +33,18 @@ struct Arguments {
 std::optional<int> numberIn(std::string_view text, int lowest, int highest) {
   int value = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size() || value < lowest || value > highest) return std::nullopt;
+  if (problem != std::errc() || end != text.data() + text.size() || value < lowest || value > highest)
+    return std::nullopt;
   return value;
 }
 
 Result<ConnectOptions> connectOptions(const Arguments& arguments) {
   const auto colon = arguments.connect.rfind(':');
-  const auto port = colon == std::string::npos ? std::nullopt : numberIn(std::string_view(arguments.connect).substr(colon + 1), 1, 65535);
-  if (!port || colon == 0) return Error{fmt::format("--connect \"{}\": want HOST:PORT with a port of 1 .. 65535", arguments.connect)};
+  const auto port = colon == std::string::npos
+                        ? std::nullopt
+                        : numberIn(std::string_view(arguments.connect).substr(colon + 1), 1, 65535);
+  if (!port || colon == 0)
+    return Error{fmt::format("--connect \"{}\": want HOST:PORT with a port of 1 .. 65535", arguments.connect)};
   ConnectOptions options;
   options.host = arguments.connect.substr(0, colon);
   options.port = std::uint16_t(*port);
@@ -53,8 +57,10 @@ Result<RenderSettings> renderSettings(const Arguments& arguments) {
   const std::string_view size = arguments.size;
   const auto cross = size.find('x');
   const auto width = cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(0, cross), 1, kSideLimit_px);
-  const auto height = cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(cross + 1), 1, kSideLimit_px);
-  if (!width || !height) return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
+  const auto height =
+      cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(cross + 1), 1, kSideLimit_px);
+  if (!width || !height)
+    return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
   settings.width_px = *width;
   settings.height_px = *height;
   if (arguments.ground != "snow" && arguments.ground != "sand")
@@ -98,7 +104,8 @@ int run(int argc, char** argv) {
   Options options("spoor-client", "Joins a session and shows it in a window, or as pictures with --headless.");
   options.add("connect", "HOST:PORT", "the server", &arguments.connect);
   options.addFlag("headless", "no window: follow to the end, then write pictures", &arguments.headless);
-  options.add("frames", "count", "pictures spread over the session, with --headless", &arguments.frame_count, 0, 100000);
+  options.add("frames", "count", "pictures spread over the session, with --headless", &arguments.frame_count, 0,
+              100000);
   options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
   options.add("out", "DIR", "where pictures go", &arguments.folder);
   options.add("name", "NAME", "what the server calls this client", &arguments.name);

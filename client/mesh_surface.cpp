@@ -22,7 +22,9 @@ std::vector<SurfacePoint> surfaceOf(const Mesh& mesh, double crease_deg) {
     for (const std::uint32_t vertex : triangle) faces_at[mesh.vertices[vertex]].push_back(faces.size());
     faces.push_back(glm::cross(pointOf(triangle[1]) - a, pointOf(triangle[2]) - a));
   }
-  const auto unit = [](const glm::dvec3& v) { return glm::length(v) > 0.0 ? glm::normalize(v) : glm::dvec3(0.0, 0.0, 1.0); };
+  const auto unit = [](const glm::dvec3& v) {
+    return glm::length(v) > 0.0 ? glm::normalize(v) : glm::dvec3(0.0, 0.0, 1.0);
+  };
 
   std::vector<SurfacePoint> points;
   points.reserve(mesh.triangles.size() * 3);

@@ -1,11 +1,10 @@
 #include "client/png_file.h"
 
+#include <fmt/format.h>
 #include <png.h>
 
 #include <cerrno>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "shared/base/assert.h"
 
@@ -23,7 +22,8 @@ Status writePng(const Image& image, const std::string& path) {
   png.height = png_uint_32(image.height_px);
   png.format = PNG_FORMAT_RGB;
   if (png_image_write_to_file(&png, path.c_str(), 0, rgb.data(), 0, nullptr) == 0)
-    return Error{fmt::format("picture {}: {}{}", path, png.message, errno != 0 ? fmt::format(" ({})", std::strerror(errno)) : "")};
+    return Error{fmt::format("picture {}: {}{}", path, png.message,
+                             errno != 0 ? fmt::format(" ({})", std::strerror(errno)) : "")};
   return {};
 }
 

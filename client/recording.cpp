@@ -67,7 +67,8 @@ void Recording::replay(const BaseTerrain& base,
   WorldState state;
   std::size_t applied = 0;
   for (int index = 0; index < wanted_; ++index) {
-    const std::size_t wanted_moments = std::max<std::size_t>(1, std::size_t(index + 1) * moments_.size() / std::size_t(wanted_));
+    const std::size_t wanted_moments =
+        std::max<std::size_t>(1, std::size_t(index + 1) * moments_.size() / std::size_t(wanted_));
     std::set<TileCoordinate> changed;
     for (; applied < wanted_moments; ++applied) {
       const Moment& moment = moments_[applied];

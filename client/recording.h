@@ -11,9 +11,9 @@
 
 namespace spoor {
 
-/// Remembers what a session looked like while it is followed, so that pictures of it can be drawn afterwards and drawing
-/// never delays the session. Nobody knows how long a session will be: it keeps every tick first, and every time it
-/// holds twice as many moments as wanted it keeps every other one. Only tiles that changed are copied.
+/// Remembers what a session looked like while it is followed, so that pictures of it can be drawn afterwards and
+/// drawing never delays the session. Nobody knows how long a session will be: it keeps every tick first, and every time
+/// it holds twice as many moments as wanted it keeps every other one. Only tiles that changed are copied.
 class Recording {
  public:
   explicit Recording(int wanted_moments) : wanted_(wanted_moments) {}
@@ -25,7 +25,8 @@ class Recording {
   void finish(const WorldState& state);
 
   /// Shows `wanted_moments` states, evenly spread, in order: the last is the session's last.
-  /// Where fewer ticks were seen than wanted, some are shown again. `show(index, state, changed)` returns false to stop.
+  /// Where fewer ticks were seen than wanted, some are shown again. `show(index, state, changed)` returns false to
+  /// stop.
   void replay(const BaseTerrain& base,
               const std::function<bool(int, const WorldState&, std::span<const TileCoordinate>)>& show) const;
 

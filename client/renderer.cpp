@@ -1,11 +1,11 @@
 #include "client/renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "client/gl_context.h"
 #include "client/shader_loader.h"
@@ -19,8 +19,8 @@ namespace {
 constexpr double kHaze_m = 3000.0;  // how far one sees on a clear day, to 1/e
 constexpr double kFogShare = 0.75;  // of the outermost window's reach: what lies there is all but hidden
 
-// Patches in one draw call. llvmpipe (Mesa 22.3) loses triangles of calls that make more than 65 536 vertices, and slows
-// down long before; a patch makes up to 4225.
+// Patches in one draw call. llvmpipe (Mesa 22.3) loses triangles of calls that make more than 65 536 vertices, and
+// slows down long before; a patch makes up to 4225.
 constexpr std::size_t kDrawPatches = 8;
 
 glm::dvec3 sunOf(const RenderSettings& settings) {
@@ -47,7 +47,8 @@ Renderer::Renderer(const ScenePack& pack, const RenderSettings& settings)
   glVertexArrayAttribIFormat(patch_layout_.name(), 0, 4, GL_INT, 0);
   glVertexArrayAttribBinding(patch_layout_.name(), 0, 0);
   glVertexArrayVertexBuffer(patch_layout_.name(), 0, patch_buffer_.name(), 0, sizeof(Patch));
-  terrain_program_ = makeProgram({"render/terrain.vert", "render/terrain.tesc", "render/terrain.tese", "render/terrain.frag"});
+  terrain_program_ =
+      makeProgram({"render/terrain.vert", "render/terrain.tesc", "render/terrain.tese", "render/terrain.frag"});
   picture_program_ = makeProgram({"render/screen.vert", "render/picture.frag"});
   makeTargets();
 }
@@ -55,7 +56,8 @@ Renderer::Renderer(const ScenePack& pack, const RenderSettings& settings)
 void Renderer::makeTargets() {
   GLint side_limit = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &side_limit);
-  if (settings_.width_px < 1 || settings_.height_px < 1 || settings_.width_px > side_limit || settings_.height_px > side_limit)
+  if (settings_.width_px < 1 || settings_.height_px < 1 || settings_.width_px > side_limit ||
+      settings_.height_px > side_limit)
     throw std::runtime_error(fmt::format("picture size {}x{}: each side must lie in 1 .. {} on this renderer",
                                          settings_.width_px, settings_.height_px, side_limit));
   GLint colour_limit = 0, depth_limit = 0;
@@ -64,7 +66,8 @@ void Renderer::makeTargets() {
   settings_.sample_count = std::clamp(settings_.sample_count, 1, std::min({colour_limit, depth_limit, 8}));
   const auto storage = [&](GLenum format) {
     GlTexture texture = makeTexture(GL_TEXTURE_2D_MULTISAMPLE);
-    glTextureStorage2DMultisample(texture.name(), settings_.sample_count, format, settings_.width_px, settings_.height_px, GL_TRUE);
+    glTextureStorage2DMultisample(texture.name(), settings_.sample_count, format, settings_.width_px,
+                                  settings_.height_px, GL_TRUE);
     return texture;
   };
   colour_ = storage(GL_RGBA8);
@@ -79,8 +82,8 @@ void Renderer::makeTargets() {
   glNamedFramebufferRenderbuffer(picture_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture_colour_.name());
   for (const auto* target : {&target_, &picture_})
     if (glCheckNamedFramebufferStatus(target->name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw std::runtime_error(fmt::format("OpenGL: no {}x{} picture with {} samples on this renderer", settings_.width_px,
-                                           settings_.height_px, settings_.sample_count));
+      throw std::runtime_error(fmt::format("OpenGL: no {}x{} picture with {} samples on this renderer",
+                                           settings_.width_px, settings_.height_px, settings_.sample_count));
 }
 
 void Renderer::resize(int width_px, int height_px) {
@@ -110,7 +113,8 @@ void Renderer::fillFrame(const TerrainView& view, const Camera& camera, const Ca
   block.ray_forward = {frame.ray_forward, frame.depth_range_m};
   block.sun = {glm::vec3(sun_), float(sun_.z / std::hypot(sun_.x, sun_.y))};
   const double fog_reach_m = kFogShare * terrain_.reachCells() * cell_m_;
-  block.scale = {float(cell_m_), frame.pixels_per_radian, float(settings_.triangle_px), float(std::max(2.6 / fog_reach_m, 1.0 / kHaze_m))};
+  block.scale = {float(cell_m_), frame.pixels_per_radian, float(settings_.triangle_px),
+                 float(std::max(2.6 / fog_reach_m, 1.0 / kHaze_m))};
   block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count), 0.0f};
   block.origin = {frame.origin_cell, frame.origin_height_q, 0};
   block.world = {pack_->width_cells, pack_->height_cells,
@@ -183,7 +187,8 @@ Image Renderer::readPicture() const {
   checkGl("reading the picture");
   // GL's first row is the lowest.
   for (std::size_t y = 0; y < std::size_t(image.height_px) / 2; ++y)
-    std::swap_ranges(image.rgba.begin() + std::ptrdiff_t(y * row_bytes), image.rgba.begin() + std::ptrdiff_t((y + 1) * row_bytes),
+    std::swap_ranges(image.rgba.begin() + std::ptrdiff_t(y * row_bytes),
+                     image.rgba.begin() + std::ptrdiff_t((y + 1) * row_bytes),
                      image.rgba.end() - std::ptrdiff_t((y + 1) * row_bytes));
   return image;
 }

@@ -22,8 +22,8 @@ struct RenderSettings {
   int coarse_pages = 12;           // pages of 64 samples along a side of each coarser one; see TerrainLevels
   double sun_azimuth_deg = 135.0;  // from east towards north: north-west, as in hill-shaded maps
   double sun_elevation_deg = 21.0;
-  double triangle_px = 8.0;        // wanted side of a triangle on the screen
-  double detail = 1.0;             // strength of the grain finer than a cell, 0 .. 1
+  double triangle_px = 8.0;  // wanted side of a triangle on the screen
+  double detail = 1.0;       // strength of the grain finer than a cell, 0 .. 1
   Ground ground = Ground::snow;
   Shade shade = Shade::lit;
 };
@@ -72,7 +72,7 @@ class Renderer {
   GlBuffer frame_block_, patch_buffer_;
   GlVertexArray patch_layout_, no_layout_;
   GlProgram terrain_program_, picture_program_;
-  GlTexture colour_, depth_;      // multisampled: bodies and the depth of all
+  GlTexture colour_, depth_;  // multisampled: bodies and the depth of all
   GlRenderbuffer picture_colour_;
   GlFramebuffer target_, picture_;
 };

@@ -1,13 +1,13 @@
 #include "client/shader_loader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 namespace spoor {
 
@@ -41,7 +41,8 @@ Status append(ShaderText& out, const fs::path& file, int depth) {
     std::smatch match;
     if (std::regex_match(line, match, kInclude)) {
       if (depth == kIncludeDepthLimit)
-        return Error{fmt::format("shader {}:{}: includes nested deeper than {}", file.string(), line_number, kIncludeDepthLimit)};
+        return Error{fmt::format("shader {}:{}: includes nested deeper than {}", file.string(), line_number,
+                                 kIncludeDepthLimit)};
       const fs::path wanted = (file.parent_path() / match[1].str()).lexically_normal();
       if (const Status status = append(out, wanted, depth + 1); !status)
         return Error{fmt::format("{} (included by {}:{})", status.error(), file.string(), line_number)};
@@ -112,7 +113,8 @@ std::string namedLog(const std::string& log, const std::vector<std::string>& fil
     if (std::regex_search(line, match, kPlace) && match[2].length() < 6) {
       const auto index = std::size_t(std::stoi(match[2].str()));
       if (index < files.size())
-        line = fmt::format("{}{}{}{}{}", match[1].str(), files[index], match[3].str(), match[4].str(), match.suffix().str());
+        line = fmt::format("{}{}{}{}{}", match[1].str(), files[index], match[3].str(), match[4].str(),
+                           match.suffix().str());
     }
     out += line + "\n";
   }

@@ -22,12 +22,16 @@ int floorModulo(int a, int b) { return a - floorDivide(a, b) * b; }
 int strideOf(int level) { return 1 << (level * kLevelShift); }
 
 /// Width of the band in which a level turns into the next; small windows have narrower ones.
-int morphSamples(int level, int side) { return std::min(level == 0 ? kFineMorphSamples : kCoarseMorphSamples, side / 4); }
+int morphSamples(int level, int side) {
+  return std::min(level == 0 ? kFineMorphSamples : kCoarseMorphSamples, side / 4);
+}
 
 GlTexture makeLayers(GLenum format, int side, int layers, GLint filter) {
   GlTexture texture = makeTexture(layers == 1 ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY);
-  if (layers == 1) glTextureStorage2D(texture.name(), 1, format, side, side);
-  else glTextureStorage3D(texture.name(), 1, format, side, side, layers);
+  if (layers == 1)
+    glTextureStorage2D(texture.name(), 1, format, side, side);
+  else
+    glTextureStorage3D(texture.name(), 1, format, side, side, layers);
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, filter);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, filter);
   glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_REPEAT);
@@ -100,7 +104,8 @@ void TerrainLevels::moveWindow(int level, glm::ivec2 focus_cell) {
   Level& l = levels_[std::size_t(level)];
   static_assert(kPageSamples == kCoarsePatchSamples << kLevelShift);
   const int page_cells = kPageSamples * strideOf(level);
-  const glm::ivec2 nearest(floorDivide(focus_cell.x + page_cells / 2, page_cells), floorDivide(focus_cell.y + page_cells / 2, page_cells));
+  const glm::ivec2 nearest(floorDivide(focus_cell.x + page_cells / 2, page_cells),
+                           floorDivide(focus_cell.y + page_cells / 2, page_cells));
   const glm::ivec2 first = nearest - l.page_count / 2;
   if (l.placed && first == l.first_page) return;
   l.first_page = first;
@@ -147,7 +152,9 @@ void TerrainLevels::loadPages(const TerrainView& view) {
   std::vector<std::int32_t> height_q(std::min(jobs.size(), kBatchPages) * kPageCells);
   for (std::size_t done = 0; done < jobs.size(); done += kBatchPages) {
     const std::size_t count = std::min(kBatchPages, jobs.size() - done);
-    const auto boxOf = [&](std::size_t i) { return SampleBox{jobs[done + i].page * kPageSamples, glm::ivec2(kPageSamples)}; };
+    const auto boxOf = [&](std::size_t i) {
+      return SampleBox{jobs[done + i].page * kPageSamples, glm::ivec2(kPageSamples)};
+    };
     forEachInParallel(count, [&](std::size_t i) {
       fillSamples(view, jobs[done + i].level, boxOf(i), std::span(height_q).subspan(i * kPageCells, kPageCells));
     });
@@ -183,10 +190,11 @@ void TerrainLevels::uploadBox(int level, const SampleBox& box, const std::int32_
   const int side = l.page_count * kPageSamples;
   const glm::ivec2 texel(floorModulo(box.first.x, side), floorModulo(box.first.y, side));
   if (level == 0)
-    glTextureSubImage2D(fine_height_.name(), 0, texel.x, texel.y, box.count.x, box.count.y, GL_RED_INTEGER, GL_INT, height_q);
+    glTextureSubImage2D(fine_height_.name(), 0, texel.x, texel.y, box.count.x, box.count.y, GL_RED_INTEGER, GL_INT,
+                        height_q);
   else
-    glTextureSubImage3D(coarse_height_.name(), 0, texel.x, texel.y, level - 1, box.count.x, box.count.y, 1, GL_RED_INTEGER,
-                        GL_INT, height_q);
+    glTextureSubImage3D(coarse_height_.name(), 0, texel.x, texel.y, level - 1, box.count.x, box.count.y, 1,
+                        GL_RED_INTEGER, GL_INT, height_q);
   l.dirty.push_back({box.first - l.first_page * kPageSamples, box.count});
   stats.samples_uploaded += std::int64_t(box.count.x) * box.count.y;
 }
@@ -220,7 +228,8 @@ void TerrainLevels::runRelief(int level, const SampleBox& box) {
   ReliefJob job;
   job.box = {box.first, box.count};
   job.window = {window.window.z, window.texel.x, window.texel.y, level};
-  job.march = {float(towards.x), float(towards.y), float(sun_.z / std::hypot(sun_.x, sun_.y)), float(cell_m_ * strideOf(level))};
+  job.march = {float(towards.x), float(towards.y), float(sun_.z / std::hypot(sun_.x, sun_.y)),
+               float(cell_m_ * strideOf(level))};
   glNamedBufferSubData(relief_job_.name(), 0, sizeof job, &job);
   glBindBufferBase(GL_UNIFORM_BUFFER, kReliefJobBinding, relief_job_.name());
   glBindImageTexture(kReliefImage, level == 0 ? fine_relief_.name() : coarse_relief_.name(), 0, GL_FALSE,
@@ -244,13 +253,12 @@ std::array<LevelWindow, kLevelCount> TerrainLevels::windows() const {
     const int side = l.page_count * kPageSamples;
     const glm::ivec2 first = l.first_page * kPageSamples;
     result[std::size_t(level)] = {{first * strideOf(level), side, level * kLevelShift},
-                                  {floorModulo(first.x, side), floorModulo(first.y, side), level == 0 ? 0 : strideOf(level) / 2, morphSamples(level, side)}};
+                                  {floorModulo(first.x, side), floorModulo(first.y, side),
+                                   level == 0 ? 0 : strideOf(level) / 2, morphSamples(level, side)}};
   }
   return result;
 }
 
-int TerrainLevels::reachCells() const {
-  return (coarse_pages_ / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1);
-}
+int TerrainLevels::reachCells() const { return (coarse_pages_ / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1); }
 
 }  // namespace spoor

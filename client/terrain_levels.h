@@ -15,10 +15,10 @@ namespace spoor {
 
 /// What loading did since the last reset, for tests and the curious.
 struct TerrainStats {
-  std::int64_t pages_loaded = 0;       // pages filled because the window moved
-  std::int64_t tiles_uploaded = 0;     // changed tiles sent to level 0
-  std::int64_t samples_uploaded = 0;   // of all levels, by both
-  std::int64_t relief_samples = 0;     // recomputed by relief.comp
+  std::int64_t pages_loaded = 0;      // pages filled because the window moved
+  std::int64_t tiles_uploaded = 0;    // changed tiles sent to level 0
+  std::int64_t samples_uploaded = 0;  // of all levels, by both
+  std::int64_t relief_samples = 0;    // recomputed by relief.comp
   std::int64_t patches_drawn = 0;
 };
 
@@ -68,10 +68,10 @@ class TerrainLevels {
     HeightRange range;
   };
   struct Level {
-    int page_count = 0;           // along a side
+    int page_count = 0;  // along a side
     glm::ivec2 first_page{0};
     bool placed = false;
-    std::vector<Page> pages;      // torus, row-major [page_count * page_count]
+    std::vector<Page> pages;       // torus, row-major [page_count * page_count]
     std::vector<SampleBox> dirty;  // samples changed since the relief was made
   };
 

@@ -29,9 +29,9 @@ bool mayBeSeen(const Planes& planes, const glm::vec3& low, const glm::vec3& high
 
 /// A level's patches as a grid: where they lie and which of them the finer window replaces.
 struct PatchGrid {
-  int side;                      // patches along the window
-  int per_page;                  // patches along a page
-  int side_cells;                // cells along a patch
+  int side;        // patches along the window
+  int per_page;    // patches along a page
+  int side_cells;  // cells along a patch
   glm::ivec2 first_cell;
   glm::ivec2 hole_first{0}, hole_end{0};
 
@@ -83,7 +83,8 @@ void TerrainLevels::collectLevel(int level, const CameraFrame& camera, std::vect
     return glm::vec3(glm::vec2(cell) * float(cell_m_), float(rise_m));
   };
   const auto collect = [&](int x, int y, const HeightRange& range) {
-    if (grid.inHole(x, y) || !mayBeSeen(planes, corner(x, y, range.lowest_q), corner(x + 1, y + 1, range.highest_q))) return;
+    if (grid.inHole(x, y) || !mayBeSeen(planes, corner(x, y, range.lowest_q), corner(x + 1, y + 1, range.highest_q)))
+      return;
     out.emplace_back(grid.first_cell + glm::ivec2(x, y) * grid.side_cells, level, grid.flags(x, y, coarsest));
   };
   for (int page = 0; page < l.page_count * l.page_count; ++page) {

@@ -17,7 +17,8 @@ std::int32_t mirrored(std::int32_t at, std::int32_t size) {
   return std::int32_t(rest < size ? rest : period - 1 - rest);
 }
 
-void fillBase(const BaseTerrain& base, glm::ivec2 first_cell, int stride, glm::ivec2 count, std::span<std::int32_t> out) {
+void fillBase(const BaseTerrain& base, glm::ivec2 first_cell, int stride, glm::ivec2 count,
+              std::span<std::int32_t> out) {
   const glm::ivec2 last = first_cell + (count - 1) * stride;
   const glm::ivec2 size(base.pack().width_cells, base.pack().height_cells);
   if (first_cell.x >= 0 && first_cell.y >= 0 && last.x < size.x && last.y < size.y) {
@@ -26,13 +27,14 @@ void fillBase(const BaseTerrain& base, glm::ivec2 first_cell, int stride, glm::i
   }
   for (int y = 0; y < count.y; ++y)
     for (int x = 0; x < count.x; ++x)
-      out[std::size_t(y * count.x + x)] = base.height(mirrored(first_cell.x + x * stride, size.x),
-                                                      mirrored(first_cell.y + y * stride, size.y));
+      out[std::size_t(y * count.x + x)] =
+          base.height(mirrored(first_cell.x + x * stride, size.x), mirrored(first_cell.y + y * stride, size.y));
 }
 
 /// Mean of what a block of a tile's cells gained since the tile was dormant; cells outside the world do not count.
 std::int32_t meanGain(const Tile& tile, const ScenePack& pack, glm::ivec2 first, int side) {
-  const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize, pack.height_cells - tile.at.y * rules::kTileSize);
+  const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize,
+                          pack.height_cells - tile.at.y * rules::kTileSize);
   const glm::ivec2 end = glm::min(first + side, inside);
   if (end.x <= first.x || end.y <= first.y) return 0;
   std::int64_t sum = 0;
@@ -47,7 +49,8 @@ std::int32_t meanGain(const Tile& tile, const ScenePack& pack, glm::ivec2 first,
 
 /// Copies a live tile's cells over the base's; what lies outside the world keeps mirroring.
 void copyTile(const Tile& tile, const ScenePack& pack, std::span<std::int32_t> out, int row_samples) {
-  const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize, pack.height_cells - tile.at.y * rules::kTileSize);
+  const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize,
+                          pack.height_cells - tile.at.y * rules::kTileSize);
   const glm::ivec2 end = glm::min(inside, glm::ivec2(rules::kTileSize));
   for (int y = 0; y < end.y; ++y)
     std::copy_n(tile.height().begin() + y * rules::kTileSize, end.x, out.begin() + y * row_samples);

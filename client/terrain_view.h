@@ -1,9 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-
 #include <glm/glm.hpp>
+#include <span>
 
 #include "shared/world/state.h"
 

@@ -32,7 +32,9 @@ Box liveBox(const TerrainView& view) {
   }
   const glm::dvec2 world_m = glm::dvec2(pack.width_cells, pack.height_cells) * (pack.cell_q / kUnits);
   if (box.low_m.x > box.high_m.x) {
-    const glm::dvec2 at = view.state->poses.empty() ? world_m * 0.5 : glm::dvec2(view.state->poses[0].x_q, view.state->poses[0].y_q) / kUnits;
+    const glm::dvec2 at = view.state->poses.empty()
+                              ? world_m * 0.5
+                              : glm::dvec2(view.state->poses[0].x_q, view.state->poses[0].y_q) / kUnits;
     box = {at - 4.0 * tile_m, at + 4.0 * tile_m};
   }
   return {glm::max(box.low_m, glm::dvec2(0.0)), glm::min(box.high_m, world_m)};
@@ -138,7 +140,8 @@ Camera followView(const TerrainView& view, int body_index) {
   const ScenePack& pack = view.base->pack();
   SPOOR_ASSERT(body_index >= 0 && std::size_t(body_index) < view.state->poses.size());
   const Pose& pose = view.state->poses[std::size_t(body_index)];
-  const double size_m = std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index), 8.0 * pack.cell_q / kUnits);
+  const double size_m =
+      std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index), 8.0 * pack.cell_q / kUnits);
   const double heading = double(pose.yaw) / 65536.0 * 2.0 * std::numbers::pi;
   const glm::dvec2 ahead(std::cos(heading), std::sin(heading));
   const glm::dvec2 aside(-ahead.y, ahead.x);
@@ -154,7 +157,8 @@ Camera trailsView(const TerrainView& view, double sun_azimuth_deg) {
   const ScenePack& pack = view.base->pack();
   const glm::dvec2 middle_m = tracksMiddle(view);
   double size_m = 16.0 * pack.cell_q / kUnits;
-  for (const int body : leadingBodies(pack)) size_m = std::max(size_m, sizeOnPath(pack, pack.bodies[std::size_t(body)].path_index));
+  for (const int body : leadingBodies(pack))
+    size_m = std::max(size_m, sizeOnPath(pack, pack.bodies[std::size_t(body)].path_index));
   const double ground_m = groundHeight(view, middle_m);
 
   // The sun from the side, either side, a little in front or behind: whichever shows most of the bodies, and among
@@ -172,7 +176,8 @@ Camera trailsView(const TerrainView& view, double sun_azimuth_deg) {
       const Pose& pose = view.state->poses[std::size_t(body)];
       const glm::dvec3 at_m = glm::dvec3(pose.x_q, pose.y_q, pose.z_q) / kUnits;
       const glm::dvec3 towards = at_m - camera.eye_m;
-      if (glm::length(towards) < 25.0 * size_m && glm::dot(glm::normalize(towards), camera.forward) > 0.82) score += 2.0;
+      if (glm::length(towards) < 25.0 * size_m && glm::dot(glm::normalize(towards), camera.forward) > 0.82)
+        score += 2.0;
       const glm::dvec2 way = glm::dvec2(at_m) - middle_m;
       if (glm::length(way) > 0.0) score += glm::dot(glm::normalize(way), ahead);
     }

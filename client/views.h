@@ -1,15 +1,15 @@
 #pragma once
 
-#include <vector>
-
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "client/camera.h"
 #include "client/terrain_view.h"
 
 namespace spoor {
 
-/// Fixed cameras, framed by what there is: live tiles, bodies and their paths. The state must belong to the base's pack.
+/// Fixed cameras, framed by what there is: live tiles, bodies and their paths. The state must belong to the base's
+/// pack.
 
 /// Behind a body, along its heading, as far as the bodies that share its path are large. The pack must have bodies.
 Camera followView(const TerrainView& view, int body_index);

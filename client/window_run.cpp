@@ -1,14 +1,13 @@
 #include "client/window_run.h"
 
+#include <epoxy/gl.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include <epoxy/gl.h>
 // After epoxy, which replaces the system's GL header.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-
 #include <fmt/format.h>
 
 #include "client/views.h"
@@ -116,7 +115,8 @@ Status runInWindow(ClientSession& session, const WindowContext& context, const R
     glfwPollEvents();
     if (!session.ended())
       if (const Status served = session.update(session.inSync() ? 1 : 20); !served) return served;
-    if (session.ended() && !told_end) fmt::print("session ended at tick {}\n", session.inSync() ? session.state().tick : 0);
+    if (session.ended() && !told_end)
+      fmt::print("session ended at tick {}\n", session.inSync() ? session.state().tick : 0);
     told_end = session.ended();
     if (!session.inSync()) continue;
 

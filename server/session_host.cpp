@@ -90,7 +90,10 @@ bool EnetSessionHost::publishQueued() {
   if (updates.size() > kQueueWarning && !std::exchange(has_warned_, true)) {
     spdlog::warn("sending lags {} ticks behind the session", updates.size());
   }
-  for (TickUpdate& update : updates) book_.publish(std::move(update));
+  for (TickUpdate& update : updates) {
+    book_.publish(std::move(update));
+    book_.serve(nowMs(), 0);  // a session that runs ahead must not keep the network waiting
+  }
   return is_finishing;
 }
 

@@ -208,8 +208,10 @@ TEST_F(Render, ChangedTileIsUploadedAloneAndChangesThePictureThereOnly) {
       const int difference = std::abs(after.rgba[i] - before.rgba[i]);
       // The tile and what its rim shades: a quarter of a tile around. Beyond, coarse levels may differ by a trace.
       const bool inside = std::abs(x - 160) <= 48 && std::abs(y - 160) <= 48;
-      if (inside) changed_inside += difference > 8;
-      else changed_outside += difference > 8;
+      if (inside)
+        changed_inside += difference > 8;
+      else
+        changed_outside += difference > 8;
     }
   }
   EXPECT_GT(changed_inside, 200u);

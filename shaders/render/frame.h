@@ -57,11 +57,11 @@ struct Frame {
   mat4 clip_from_rel;
   mat4 shadow_from_rel;  // to the bodies' shadow map, 0 .. 1
   vec4 eye;              // camera; w > 0: orthographic
-  vec4 ray_right;        // place at (x, y) of the screen, -1 .. 1: eye + away * (forward + x * right + y * up) [m];
+  vec4 ray_right;        // place at (x, y) of the screen: eye + away * (forward + x * right + y * up) [m];
   vec4 ray_up;           // orthographic: eye + x * right + y * up + away * forward
   vec4 ray_forward;      // w: depth * away [m]; orthographic: away of depth 0 [m]
   vec4 sun;              // towards the sun; w: tangent of its elevation
-  vec4 scale;            // cell side [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
+  vec4 scale;            // cell [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
   vec4 look;             // strength of the fine detail, 0 .. 1; side of the shadow map's texel [m]; samples a pixel; unused
   ivec4 origin;          // cell x, y; height, 0.1 mm
   ivec4 world;           // cells x, y; kGround*; kShade*
@@ -72,7 +72,7 @@ struct Frame {
 struct ReliefJob {
   ivec4 box;     // first sample x, y (from the window's first); samples x, y
   ivec4 window;  // samples a side; texel of the first sample x, y; layer
-  vec4 march;    // unit steps towards the sun, along x and y (the longer is +-1); tangent of its elevation; side of a sample [m]
+  vec4 march;    // steps towards the sun along x and y, the longer +-1; tangent of its elevation; side of a sample [m]
 };
 
 #ifdef __cplusplus

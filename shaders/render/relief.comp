@@ -18,7 +18,8 @@ ivec2 wrapped(ivec2 at) {
 
 int heightAt(ivec2 at) {
   ivec2 texel = wrapped(at);
-  return job.window.w == 0 ? texelFetch(fine_height, texel, 0).r : texelFetch(coarse_height, ivec3(texel, job.window.w - 1), 0).r;
+  if (job.window.w == 0) return texelFetch(fine_height, texel, 0).r;
+  return texelFetch(coarse_height, ivec3(texel, job.window.w - 1), 0).r;
 }
 
 /// Rise from the sample to another [m].

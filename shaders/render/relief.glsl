@@ -15,7 +15,8 @@ vec4 reliefSample(int level, vec2 rel_cells) {
   LevelWindow w = frame.levels[level];
   vec2 from_first = rel_cells + vec2(frame.origin.xy - w.window.xy - w.texel.z);
   vec2 place = (from_first / float(1 << w.window.w) + vec2(w.texel.xy) + 0.5) / float(w.window.z);
-  return level == 0 ? textureLod(fine_relief, place, 0.0) : textureLod(coarse_relief, vec3(place, float(level - 1)), 0.0);
+  if (level == 0) return textureLod(fine_relief, place, 0.0);
+  return textureLod(coarse_relief, vec3(place, float(level - 1)), 0.0);
 }
 
 /// Which level shows a place: at least what its footprint [cells a pixel] asks for, and what the windows cover.

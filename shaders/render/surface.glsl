@@ -10,7 +10,8 @@ float sampleHeight(int level, ivec2 at) {
   int side = frame.levels[level].window.z;
   ivec2 texel = clamp(at, ivec2(0), ivec2(side - 1)) + frame.levels[level].texel.xy;
   texel -= ivec2(greaterThanEqual(texel, ivec2(side))) * side;
-  int height = level == 0 ? texelFetch(fine_height, texel, 0).r : texelFetch(coarse_height, ivec3(texel, level - 1), 0).r;
+  int height = level == 0 ? texelFetch(fine_height, texel, 0).r
+                          : texelFetch(coarse_height, ivec3(texel, level - 1), 0).r;
   return float(height - frame.origin.z) / float(kUnitsPerMetre);
 }
 
@@ -26,7 +27,7 @@ float levelHeight(int level, ivec2 cell) {
   return mix(south, north, part.y);
 }
 
-/// How far a level has turned into the next at a place (cells from the origin cell): 0 inside, 1 on its rim and outside.
+/// How far a level has turned into the next at a place (cells from the origin cell): 0 inside, 1 on the rim, outside.
 float morphAt(int level, vec2 rel_cells) {
   if (level == kLevelCount - 1) return 0.0;
   LevelWindow w = frame.levels[level];

@@ -113,25 +113,25 @@ TickPlan planTick(const ScenePack& pack, const WorldState& state, std::span<cons
   if (tiles.empty()) return plan;
   for (int i = 0; i < body_count; ++i)
     if (!takes_part[i]) placed[i].push_back(placeBody(pack, i, poses[i]));
+  // A joined domain may reach tiles that none of its bodies does, and there wake bodies at rest, whose domains join ...
   for (bool grew = true; grew;) {
+    plan.sub_steps.clear();
+    for (int step = 0; step < steps; ++step) {
+      SubStep sub_step;
+      for (int i = 0; i < body_count; ++i)
+        if (takes_part[i]) sub_step.bodies.push_back(placed[i][placed[i].size() == 1 ? 0 : std::size_t(step)]);
+      sub_step.domains = joinedDomains(pack, sub_step.bodies);
+      sub_step.sweep_count = (step + 1) * pack.sweeps_per_tick / steps - step * pack.sweeps_per_tick / steps;
+      for (const Domain& domain : sub_step.domains) addTiles(domain.box, tiles);
+      plan.sub_steps.push_back(std::move(sub_step));
+    }
     grew = false;
     for (int i = 0; i < body_count; ++i) {
-      const CellBox box = grown(placed[i].back().box, pack);
-      if (takes_part[i] || !meetsTiles(box, tiles)) continue;
+      if (takes_part[i] || !meetsTiles(grown(placed[i].back().box, pack), tiles)) continue;
       takes_part[i] = grew = true;
-      addTiles(box, tiles);
     }
   }
-
   plan.active.assign(tiles.begin(), tiles.end());
-  for (int step = 0; step < steps; ++step) {
-    SubStep sub_step;
-    for (int i = 0; i < body_count; ++i)
-      if (takes_part[i]) sub_step.bodies.push_back(placed[i][placed[i].size() == 1 ? 0 : std::size_t(step)]);
-    sub_step.domains = joinedDomains(pack, sub_step.bodies);
-    sub_step.sweep_count = (step + 1) * pack.sweeps_per_tick / steps - step * pack.sweeps_per_tick / steps;
-    plan.sub_steps.push_back(std::move(sub_step));
-  }
   return plan;
 }
 

@@ -1,0 +1,157 @@
+// One rule, the same hash: whatever the threads, kernels, order of bodies, and wherever a session was taken up again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/scenes.h"
+
+namespace spoor::test {
+namespace {
+
+using Hashes = std::vector<std::uint64_t>;
+
+/// Four bodies that meet in the middle of 4 x 3 tiles, one of them faster than a cell a tick.
+RandomWorld meeting() {
+  RandomWorld made;
+  made.pack = noisePack(250, 170, 77, -5000, 5000, 4000);
+  made.pack.obstacle_threshold_q = 30;
+  addBody(made.pack, boxMesh(9000, 5000, 4000), 60000, 80000, 800);
+  addBody(made.pack, wedgeMesh(7000, 12000, 4000), 190000, 85000, 1500);
+  addBody(made.pack, tetrahedronMesh(6000), 125000, 30000, 2500);
+  addBody(made.pack, bladeMesh(20000, 5000), 130000, 140000, 700);
+  std::vector<Pose> poses = initialState({}, BaseTerrain(made.pack)).poses;
+  for (int tick = 0; tick < 24; ++tick) {
+    poses = {moved(poses[0], 2900, 0, 0, 30), moved(poses[1], -2900, 100), moved(poses[2], 10, 2300, -20, 200),
+             moved(poses[3], -100, -2500, 0, -50)};
+    if (tick < 20) made.ticks.push_back(poses);
+    else made.ticks.push_back(made.ticks.back());
+  }
+  return made;
+}
+
+Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options) {
+  Simulation simulation = world.simulate(options);
+  Hashes hashes;
+  for (const auto& poses : ticks) {
+    const auto result = simulation.step(poses);
+    EXPECT_TRUE(result);
+    hashes.push_back(result->update.state_hash);
+  }
+  EXPECT_TRUE(recount(simulation.state()));
+  EXPECT_EQ(simulation.state().ledger.error(), 0);
+  return hashes;
+}
+
+class Determinism : public ::testing::Test {
+ protected:
+  RandomWorld made_ = meeting();
+  World world_{made_.pack};
+  Hashes expected_ = hashesOf(world_, made_.ticks, {.thread_count = 1});
+};
+
+TEST_F(Determinism, TwoRunsHaveTheSameHashes) {
+  EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = 1}), expected_);
+  Hashes distinct = expected_;
+  std::ranges::sort(distinct);
+  EXPECT_EQ(std::ranges::unique(distinct).begin(), distinct.end()) << "every tick has another hash";
+}
+
+TEST_F(Determinism, AnyNumberOfThreadsHasTheSameHashes) {
+  for (const int threads : {2, 3, 8})
+    for (int run = 0; run < 2; ++run) EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = threads}), expected_) << threads;
+}
+
+TEST_F(Determinism, EveryKernelsHaveTheSameHashes) {
+  for (const Kernels* set : availableKernels())
+    EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = 2, .kernels = set}), expected_) << set->name;
+}
+
+TEST_F(Determinism, SkippingWhatIsSettledDoesNotShow) {
+  EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = 1, .skip_settled = false}), expected_);
+  EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = 3, .skip_settled = false}), expected_);
+}
+
+/// Hashes of the tiles alone, at every tick, with the bodies listed in another order.
+Hashes tileHashesInOrder(const RandomWorld& made, const std::vector<std::size_t>& order) {
+  ScenePack pack = made.pack;
+  for (std::size_t i = 0; i < order.size(); ++i) pack.bodies[i] = made.pack.bodies[order[i]];
+  const World world(std::move(pack));
+  Simulation simulation = world.simulate();
+  Hashes hashes;
+  for (const auto& poses : made.ticks) {
+    std::vector<Pose> permuted;
+    for (const std::size_t i : order) permuted.push_back(poses[i]);
+    EXPECT_TRUE(simulation.step(permuted));
+    hashes.push_back(simulation.state().tiles_hash);
+  }
+  return hashes;
+}
+
+TEST_F(Determinism, TheOrderOfBodiesDoesNotShow) {
+  std::vector<std::size_t> order = {0, 1, 2, 3};
+  const Hashes expected = tileHashesInOrder(made_, order);
+  while (std::ranges::next_permutation(order).found) ASSERT_EQ(tileHashesInOrder(made_, order), expected);
+}
+
+TEST_F(Determinism, ASessionTakenUpFromASnapshotGoesOnTheSame) {
+  for (const std::size_t cut : {std::size_t(0), std::size_t(1), std::size_t(7), std::size_t(21)}) {
+    Simulation before = world_.simulate();
+    for (std::size_t i = 0; i < cut; ++i) ASSERT_TRUE(before.step(made_.ticks[i]));
+    auto state = decodeSnapshot(encodeSnapshot(before.state(), world_.base), world_.id, world_.base);
+    ASSERT_TRUE(state) << state.error();
+    Simulation after(world_.base, std::move(*state), makeNativeBackend({.thread_count = 2}));
+    for (std::size_t i = cut; i < made_.ticks.size(); ++i) {
+      const auto result = after.step(made_.ticks[i]);
+      ASSERT_TRUE(result);
+      ASSERT_EQ(result->update.state_hash, expected_[i]) << "cut at " << cut << ", tick " << i + 1;
+    }
+  }
+}
+
+TEST_F(Determinism, AMirrorThatSimulatesFollowsAServer) {
+  Simulation server = world_.simulate({.thread_count = 2}), mirror = world_.simulate({.thread_count = 1});
+  for (const auto& poses : made_.ticks) {
+    const auto published = server.step(poses);
+    ASSERT_TRUE(published);
+    const auto result = mirror.step(published->update.poses);
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->update.state_hash, published->update.state_hash);
+    ASSERT_EQ(result->update.tiles, published->update.tiles) << "changes have one encoding";
+  }
+}
+
+TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
+  for (std::uint32_t seed = 1000; seed < 1030; ++seed) {
+    RandomWorld random = randomWorld(seed, 12);
+    SCOPED_TRACE(random.description);
+    const World world(random.pack);
+    const Hashes expected = hashesOf(world, random.ticks, {.thread_count = 1});
+    const auto sets = availableKernels();
+    EXPECT_EQ(hashesOf(world, random.ticks, {.thread_count = 3, .kernels = sets[seed % sets.size()]}), expected);
+    EXPECT_EQ(hashesOf(world, random.ticks, {.thread_count = 2, .kernels = sets[0], .skip_settled = false}), expected);
+  }
+}
+
+TEST(Simulation, RefusesPosesThatCannotBeAndStaysAsItWas) {
+  RandomWorld made = meeting();
+  const World world(made.pack);
+  Simulation simulation = world.simulate();
+  ASSERT_TRUE(simulation.step(made.ticks[0]));
+  const std::uint64_t before = stateHash(simulation.state());
+  std::vector<Pose> poses = made.ticks[1];
+  poses.pop_back();
+  EXPECT_NE(simulation.step(poses).error().find("3 poses for 4 bodies"), std::string::npos);
+  for (std::int32_t Pose::*axis : {&Pose::x_q, &Pose::y_q, &Pose::z_q})
+    for (const std::int32_t far : {INT32_MAX, INT32_MIN}) {
+      poses = made.ticks[1];
+      poses[2].*axis = far;
+      const auto result = simulation.step(poses);
+      ASSERT_FALSE(result);
+      EXPECT_NE(result.error().find("body 2"), std::string::npos) << result.error();
+    }
+  EXPECT_EQ(stateHash(simulation.state()), before);
+  EXPECT_TRUE(simulation.step(made.ticks[1]));
+}
+
+}  // namespace
+}  // namespace spoor::test

@@ -1,0 +1,192 @@
+// Whatever is set in motion comes to rest, and what rests costs nothing and stays as it is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/scenes.h"
+
+namespace spoor::test {
+namespace {
+
+/// Ticks until nothing is active any more, the bodies standing where they are; -1 if that takes over `limit`.
+int ticksToSleep(Simulation& simulation, int limit) {
+  for (int tick = 0; tick <= limit; ++tick) {
+    const auto result = simulation.step(simulation.state().poses);
+    EXPECT_TRUE(result);
+    EXPECT_EQ(simulation.state().ledger.error(), 0);
+    if (result->effect.active_cells == 0) return tick;
+  }
+  return -1;
+}
+
+/// A column of soil on level ground, and a needle beside it whose prick wakes the tile.
+ScenePack columnPack(int size, int column_height, int threshold) {
+  std::vector<std::int32_t> ground(std::size_t(size * size), 0);
+  ground[std::size_t(size / 2 * size + size / 2)] = column_height;
+  ScenePack pack = groundPack(size, size, ground, column_height + 100000);
+  pack.slope_threshold_q = threshold;
+  pack.diagonal_threshold_q = threshold * 99 / 70;  // times the root of 2
+  addBody(pack, boxMesh(200, 200, 200), size / 2 * 1000 - 2500, size / 2 * 1000 + 500, 10);
+  return pack;
+}
+
+/// Pricks, and takes the needle away.
+void wakeColumn(Simulation& simulation) {
+  const std::vector<Pose> poses = simulation.state().poses;
+  ASSERT_TRUE(simulation.step(poses));
+  ASSERT_TRUE(simulation.step(std::vector{moved(poses[0], 0, 0, 1 << 28)}));
+}
+
+TEST(Sleep, AColumnOfSandComesToRestWithEverySlopeAtMostItsThreshold) {
+  for (const int threshold : {1, 7, 700}) {
+    const World world(columnPack(90, 60000 * std::min(threshold, 70) / 70 + 500, threshold));
+    Simulation simulation = world.simulate();
+    wakeColumn(simulation);
+    const int ticks = ticksToSleep(simulation, 2000);
+    ASSERT_GE(ticks, 0) << "threshold " << threshold;
+    EXPECT_EQ(steepestExcess(world.pack, simulation.state().tiles), 0) << "threshold " << threshold;
+  }
+}
+
+TEST(Sleep, APileIsRoundAndCentred) {
+  const World world(columnPack(121, 4000000, 700));
+  Simulation simulation = world.simulate();
+  wakeColumn(simulation);
+  ASSERT_GE(ticksToSleep(simulation, 3000), 0);
+  // Radius along the axes and the diagonals, and the first moment.
+  const auto isHigh = [&](int x, int y) { return heightOf(simulation.state(), x, y) > 200; };
+  int axis = 0, diagonal = 0;
+  while (isHigh(60 + axis, 60)) ++axis;
+  while (isHigh(60 + diagonal, 60 + diagonal)) ++diagonal;
+  EXPECT_GT(axis, 10);
+  EXPECT_NEAR(diagonal * std::sqrt(2.0) / axis, 1.0, 0.15);
+  double moment_x = 0, moment_y = 0, mass = 0;
+  for (int y = 20; y < 101; ++y)
+    for (int x = 20; x < 101; ++x) {
+      const double height = heightOf(simulation.state(), x, y);
+      moment_x += height * (x - 60);
+      moment_y += height * (y - 60);
+      mass += height;
+    }
+  EXPECT_LT(std::abs(moment_x / mass), 0.5);
+  EXPECT_LT(std::abs(moment_y / mass), 0.5);
+}
+
+/// Scenes whose bodies run for a while and then stand.
+struct Scene {
+  const char* name;
+  ScenePack pack;
+  std::vector<std::array<int, 4>> speed;  // of every body: dx, dy, dz, turn per tick
+  int running_ticks;
+};
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> result;
+  {
+    Scene scene{"a box that ploughs", noisePack(200, 90, 3, -900, 900, 20000), {{900, 0, 0, 0}}, 100};
+    addBody(scene.pack, boxMesh(6000, 9000, 4000), 40000, 45000, 1500);
+    result.push_back(std::move(scene));
+  }
+  {
+    Scene scene{"a blade that turns across tiles", flatPack(140, 140), {{0, 0, 0, 400}}, 120};
+    addBody(scene.pack, bladeMesh(60000, 6000), 66000, 63000, 3000);
+    result.push_back(std::move(scene));
+  }
+  {
+    Scene scene{"bodies that meet over thin soil", noisePack(190, 100, 4, -500, 500, 900), {{1700, 0, 0, 0}, {-1600, 30, 0, 10}}, 40};
+    addBody(scene.pack, wedgeMesh(5000, 8000, 3000), 50000, 50000, 1200);
+    addBody(scene.pack, boxMesh(7000, 5000, 3000), 140000, 48000, 800);
+    result.push_back(std::move(scene));
+  }
+  {
+    Scene scene{"a stamp that digs", flatPack(100, 100), {{0, 0, -200, 0}}, 60};
+    addBody(scene.pack, archMesh(20000, 10000, 8000), 50000, 50000, 0);
+    result.push_back(std::move(scene));
+  }
+  {
+    Scene scene{"a body that leaves the world", flatPack(80, 80), {{2500, 600, 0, 90}}, 60};
+    addBody(scene.pack, tetrahedronMesh(9000), 30000, 30000, 4000);
+    result.push_back(std::move(scene));
+  }
+  return result;
+}
+
+TEST(Sleep, EverySceneSleepsWithin300TicksOnceItsBodiesStand) {
+  for (Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const World world(std::move(scene.pack));
+    Simulation simulation = world.simulate();
+    for (int tick = 0; tick < scene.running_ticks; ++tick) {
+      std::vector<Pose> poses = simulation.state().poses;
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        const auto& [dx, dy, dz, turn] = scene.speed[i];
+        poses[i] = moved(poses[i], dx, dy, dz, turn);
+      }
+      ASSERT_TRUE(simulation.step(poses));
+    }
+    const int ticks = ticksToSleep(simulation, 300);
+    ASSERT_GE(ticks, 0);
+    EXPECT_TRUE(simulation.state().tiles.awake().empty());
+    const std::uint64_t hash = simulation.state().tiles_hash;
+    for (int tick = 0; tick < 5; ++tick) {
+      const auto result = simulation.step(simulation.state().poses);
+      ASSERT_TRUE(result);
+      EXPECT_EQ(result->effect.active_cells, 0);
+      EXPECT_TRUE(result->effect.changes.empty());
+    }
+    EXPECT_EQ(simulation.state().tiles_hash, hash);
+  }
+}
+
+TEST(Sleep, WhatSleepsWouldNotMoveIfItWereAwake) {
+  for (Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const World world(std::move(scene.pack));
+    Simulation simulation = world.simulate();
+    for (int tick = 0; tick < 20; ++tick) {
+      std::vector<Pose> poses = simulation.state().poses;
+      for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = moved(poses[i], scene.speed[i][0], scene.speed[i][1], scene.speed[i][2]);
+      ASSERT_TRUE(simulation.step(poses));
+    }
+    ASSERT_GE(ticksToSleep(simulation, 300), 0);
+    auto state = decodeSnapshot(encodeSnapshot(simulation.state(), world.base), world.id, world.base);
+    ASSERT_TRUE(state);
+    for (Tile* tile : state->tiles.sorted()) state->tiles.setWake(*tile, kWakeSelf);
+    Simulation awake(world.base, std::move(*state), makeNativeBackend({.thread_count = 1}));
+    const auto result = awake.step(simulation.state().poses);
+    ASSERT_TRUE(result);
+    EXPECT_GE(result->effect.active_cells, std::int64_t(simulation.state().tiles.size()) * rules::kTileCells);
+    for (const Tile* tile : simulation.state().tiles.sorted())
+      ASSERT_EQ(awake.state().tiles.find(tile->at)->hash, tile->hash) << "tile (" << tile->at.x << ", " << tile->at.y << ")";
+  }
+}
+
+TEST(Sleep, AStandingBodyPressesOnlyInTheFirstTick) {
+  ScenePack pack = flatPack(60, 60);
+  addBody(pack, boxMesh(4000, 4000, 4000), 30000, 30000, 500);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulate();
+  const auto first = simulation.step(simulation.state().poses);
+  ASSERT_TRUE(first);
+  EXPECT_GT(first->effect.penetrating_cells, 0);
+  EXPECT_EQ(heightOf(simulation.state(), 30, 30), -500);
+  ASSERT_GE(ticksToSleep(simulation, 10), 0);
+  EXPECT_EQ(heightOf(simulation.state(), 30, 30), -500);
+}
+
+TEST(Sleep, SoilThatABodyHeldUpFallsOnceItIsGone) {
+  ScenePack pack = flatPack(60, 60);
+  addBody(pack, boxMesh(8000, 8000, 4000), 30000, 30000, 6000);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulate();
+  ASSERT_GE(ticksToSleep(simulation, 300), 0);
+  EXPECT_EQ(heightOf(simulation.state(), 30, 30), -6000) << "the body keeps its hole open";
+  ASSERT_TRUE(simulation.step(std::vector{moved(simulation.state().poses[0], 0, 0, 20000)}));
+  ASSERT_GE(ticksToSleep(simulation, 300), 0);
+  EXPECT_GT(heightOf(simulation.state(), 30, 30), -6000);
+  EXPECT_EQ(steepestExcess(world.pack, simulation.state().tiles), 0);
+}
+
+}  // namespace
+}  // namespace spoor::test
