@@ -52,8 +52,10 @@ Status Follower::serve(std::int64_t now_ms, int wait_ms) {
       return Error{"server " + options_.server_name + " sent bytes that are no message: " + message.error()};
     }
     Status status;
-    if (auto* tick = std::get_if<TickUpdate>(&*message)) status = onTick(std::move(*tick));
-    else status = onMessage(*message);
+    if (auto* tick = std::get_if<TickUpdate>(&*message))
+      status = onTick(std::move(*tick));
+    else
+      status = onMessage(*message);
     if (!status) return status;
   }
   return checkTime(now_ms);
@@ -61,15 +63,20 @@ Status Follower::serve(std::int64_t now_ms, int wait_ms) {
 
 Status Follower::onMessage(const Message& message) {
   switch (kindOf(message)) {
-    case MessageKind::welcome: return onWelcome(std::get<Welcome>(message));
-    case MessageKind::bulk_chunk: return onBulkChunk(std::get<BulkChunk>(message));
-    case MessageKind::goodbye: return onGoodbye(std::get<Goodbye>(message));
-    case MessageKind::refused: return onRefused(std::get<Refused>(message));
+    case MessageKind::welcome:
+      return onWelcome(std::get<Welcome>(message));
+    case MessageKind::bulk_chunk:
+      return onBulkChunk(std::get<BulkChunk>(message));
+    case MessageKind::goodbye:
+      return onGoodbye(std::get<Goodbye>(message));
+    case MessageKind::refused:
+      return onRefused(std::get<Refused>(message));
     case MessageKind::tick_update:
     case MessageKind::hello:
     case MessageKind::pack_request:
     case MessageKind::snapshot_request:
-    case MessageKind::confirm: break;
+    case MessageKind::confirm:
+      break;
   }
   return unexpected(message);
 }
@@ -215,11 +222,15 @@ Status Follower::onDisconnected(CloseCode code) {
                  ", was here"};
   }
   switch (code) {
-    case CloseCode::none: return Error{"server " + server + " went away (connection lost)"};
-    case CloseCode::too_slow: return Error{"server " + server + " let this client go: too slow"};
-    case CloseCode::refused: return Error{"server " + server + " let this client go"};
+    case CloseCode::none:
+      return Error{"server " + server + " went away (connection lost)"};
+    case CloseCode::too_slow:
+      return Error{"server " + server + " let this client go: too slow"};
+    case CloseCode::refused:
+      return Error{"server " + server + " let this client go"};
     case CloseCode::done:
-    case CloseCode::left: break;
+    case CloseCode::left:
+      break;
   }
   return Error{"connection closed by server " + server + " without goodbye"};
 }

@@ -17,8 +17,7 @@ std::int64_t nowMs() {
 class EnetSession final : public ClientSession {
  public:
   EnetSession(EnetClient client, FollowerOptions options)
-      : transport_(std::move(client.transport)),
-        follower_(*transport_, client.server, std::move(options), nowMs()) {}
+      : transport_(std::move(client.transport)), follower_(*transport_, client.server, std::move(options), nowMs()) {}
 
   Status update(int wait_ms) override { return follower_.update(nowMs(), wait_ms); }
   bool inSync() const override { return follower_.inSync(); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 // After epoxy, which replaces the system's GL header.
 #define GLFW_INCLUDE_NONE
@@ -115,8 +116,10 @@ Status runInWindow(ClientSession& session, const WindowContext& context, const R
     glfwPollEvents();
     if (!session.ended())
       if (const Status served = session.update(session.inSync() ? 1 : 20); !served) return served;
-    if (session.ended() && !told_end)
+    if (session.ended() && !told_end) {
       fmt::print("session ended at tick {}\n", session.inSync() ? session.state().tick : 0);
+      std::fflush(stdout);
+    }
     told_end = session.ended();
     if (!session.inSync()) continue;
 

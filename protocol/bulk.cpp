@@ -21,8 +21,8 @@ BulkChunk chunkAt(const BulkPackage& package, std::uint64_t offset) {
   SPOOR_ASSERT(offset < package.stored.size());
   const std::size_t size = std::min<std::size_t>(kBulkChunkBytes, package.stored.size() - std::size_t(offset));
   const auto piece = std::span(package.stored).subspan(std::size_t(offset), size);
-  return BulkChunk{package.kind,          package.compressed, package.raw_bytes,
-                   package.stored.size(), offset,             {piece.begin(), piece.end()}};
+  return BulkChunk{package.kind, package.compressed,          package.raw_bytes, package.stored.size(),
+                   offset,       {piece.begin(), piece.end()}};
 }
 
 Status BulkAssembler::add(const BulkChunk& chunk) {

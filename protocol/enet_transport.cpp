@@ -133,20 +133,23 @@ void EnetTransport::take(ENetEvent& event, std::vector<TransportEvent>& events) 
     case ENET_EVENT_TYPE_DISCONNECT:
       event.peer->data = nullptr;  // the slot will serve others
       if (record == nullptr) break;
-      events.push_back(
-          {TransportEvent::Kind::disconnected, record->id, Channel::control, CloseCode(event.data), {}});
+      events.push_back({TransportEvent::Kind::disconnected, record->id, Channel::control, CloseCode(event.data), {}});
       records_.erase(record->id);
       break;
     case ENET_EVENT_TYPE_RECEIVE:
       if (record != nullptr && event.channelID < kChannelCount) {
         record->heard_ms = now_ms_;
         const std::span data(event.packet->data, event.packet->dataLength);
-        events.push_back({TransportEvent::Kind::message, record->id, Channel(event.channelID), CloseCode::none,
+        events.push_back({TransportEvent::Kind::message,
+                          record->id,
+                          Channel(event.channelID),
+                          CloseCode::none,
                           {data.begin(), data.end()}});
       }
       enet_packet_destroy(event.packet);
       break;
-    case ENET_EVENT_TYPE_NONE: break;
+    case ENET_EVENT_TYPE_NONE:
+      break;
   }
 }
 

@@ -22,8 +22,10 @@ class InProcessTransport final : public Transport {
 
   std::vector<TransportEvent> service(int) override {
     std::vector<TransportEvent> events;
-    if (!isServer()) network_.collect(line_, false, events);
-    else for (auto& [id, line] : network_.lines_) network_.collect(id, true, events);
+    if (!isServer())
+      network_.collect(line_, false, events);
+    else
+      for (auto& [id, line] : network_.lines_) network_.collect(id, true, events);
     return events;
   }
 

@@ -17,9 +17,9 @@ namespace spoor {
 class InProcessNetwork {
  public:
   struct Conditions {
-    int lowest_delay_ms = 0;   // one way
+    int lowest_delay_ms = 0;  // one way
     int highest_delay_ms = 0;
-    int loss_permille = 0;     // of messages, each time they are sent; below 1000
+    int loss_permille = 0;  // of messages, each time they are sent; below 1000
     int resend_after_ms = 100;
   };
 

@@ -36,8 +36,8 @@ struct Builder {
 
   void operator()(const Hello& message) {
     SPOOR_ASSERT(!message.name.empty());
-    out.Finish(wire::CreateHello(out, message.protocol_version,
-                                 out.CreateString(printableText(message.name, kNameLimit))));
+    out.Finish(
+        wire::CreateHello(out, message.protocol_version, out.CreateString(printableText(message.name, kNameLimit))));
   }
   void operator()(const Welcome& message) {
     out.Finish(wire::CreateWelcome(out, message.protocol_version, message.pack_id.low, message.pack_id.high,
@@ -63,12 +63,10 @@ struct Builder {
     const auto tiles = out.CreateVector(message.tiles);
     out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles));
   }
-  void operator()(const Confirm& message) {
-    out.Finish(wire::CreateConfirm(out, message.tick, message.state_hash));
-  }
+  void operator()(const Confirm& message) { out.Finish(wire::CreateConfirm(out, message.tick, message.state_hash)); }
   void operator()(const Goodbye& message) {
-    out.Finish(wire::CreateGoodbye(out, out.CreateString(printableText(message.reason, kReasonLimit)),
-                                   message.final_tick));
+    out.Finish(
+        wire::CreateGoodbye(out, out.CreateString(printableText(message.reason, kReasonLimit)), message.final_tick));
   }
   void operator()(const Refused& message) {
     out.Finish(wire::CreateRefused(out, message.protocol_version,
@@ -118,8 +116,12 @@ Result<Message> convert(const wire::BulkChunk& table) {
   if (table.offset() > table.stored_bytes() || size > table.stored_bytes() - table.offset()) {
     return invalid(kind, "the piece lies outside the whole");
   }
-  return Message(BulkChunk{BulkKind(table.kind()), table.compressed(), table.raw_bytes(), table.stored_bytes(),
-                           table.offset(), {table.bytes()->begin(), table.bytes()->end()}});
+  return Message(BulkChunk{BulkKind(table.kind()),
+                           table.compressed(),
+                           table.raw_bytes(),
+                           table.stored_bytes(),
+                           table.offset(),
+                           {table.bytes()->begin(), table.bytes()->end()}});
 }
 
 Result<Message> convert(const wire::TickUpdate& table) {
@@ -129,8 +131,8 @@ Result<Message> convert(const wire::TickUpdate& table) {
   TickUpdate update{table.tick(), table.state_hash(), {}, {table.tiles()->begin(), table.tiles()->end()}};
   update.poses.reserve(table.poses()->size());
   for (const wire::Pose* pose : *table.poses()) {
-    update.poses.push_back({pose->x_q(), pose->y_q(), pose->z_q(), pose->yaw(), pose->pitch(), pose->roll(),
-                            pose->spin()});
+    update.poses.push_back(
+        {pose->x_q(), pose->y_q(), pose->z_q(), pose->yaw(), pose->pitch(), pose->roll(), pose->spin()});
   }
   return Message(std::move(update));
 }
@@ -174,32 +176,46 @@ Result<Message> decodeMessage(std::span<const std::uint8_t> bytes, Sender from) 
   const auto frame = decodeFrame(bytes, from);
   if (!frame) return Error{frame.error()};
   switch (frame->kind) {
-    case MessageKind::hello: return verifyAndConvert<wire::Hello>(*frame);
-    case MessageKind::welcome: return verifyAndConvert<wire::Welcome>(*frame);
-    case MessageKind::pack_request: return verifyAndConvert<wire::PackRequest>(*frame);
-    case MessageKind::snapshot_request: return verifyAndConvert<wire::SnapshotRequest>(*frame);
-    case MessageKind::bulk_chunk: return verifyAndConvert<wire::BulkChunk>(*frame);
-    case MessageKind::tick_update: return verifyAndConvert<wire::TickUpdate>(*frame);
-    case MessageKind::confirm: return verifyAndConvert<wire::Confirm>(*frame);
-    case MessageKind::goodbye: return verifyAndConvert<wire::Goodbye>(*frame);
-    case MessageKind::refused: return verifyAndConvert<wire::Refused>(*frame);
+    case MessageKind::hello:
+      return verifyAndConvert<wire::Hello>(*frame);
+    case MessageKind::welcome:
+      return verifyAndConvert<wire::Welcome>(*frame);
+    case MessageKind::pack_request:
+      return verifyAndConvert<wire::PackRequest>(*frame);
+    case MessageKind::snapshot_request:
+      return verifyAndConvert<wire::SnapshotRequest>(*frame);
+    case MessageKind::bulk_chunk:
+      return verifyAndConvert<wire::BulkChunk>(*frame);
+    case MessageKind::tick_update:
+      return verifyAndConvert<wire::TickUpdate>(*frame);
+    case MessageKind::confirm:
+      return verifyAndConvert<wire::Confirm>(*frame);
+    case MessageKind::goodbye:
+      return verifyAndConvert<wire::Goodbye>(*frame);
+    case MessageKind::refused:
+      return verifyAndConvert<wire::Refused>(*frame);
   }
   return Error{"frame: unknown kind"};
 }
 
 const char* toText(SnapshotCause cause) {
   switch (cause) {
-    case SnapshotCause::join: return "joining";
-    case SnapshotCause::tile_mismatch: return "a tick that cannot be applied";
-    case SnapshotCause::hash_mismatch: return "another state hash";
-    case SnapshotCause::missing_tick: return "a missing tick";
+    case SnapshotCause::join:
+      return "joining";
+    case SnapshotCause::tile_mismatch:
+      return "a tick that cannot be applied";
+    case SnapshotCause::hash_mismatch:
+      return "another state hash";
+    case SnapshotCause::missing_tick:
+      return "a missing tick";
   }
   return "an unknown cause";
 }
 
 std::string printableText(std::string_view text, std::size_t limit) {
   std::string result(text.substr(0, limit));
-  std::replace_if(result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return result;
 }
 

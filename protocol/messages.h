@@ -45,10 +45,10 @@ struct PackRequest {
 };
 
 enum class SnapshotCause : std::uint8_t {
-  join = 0,             // the first of a connection
-  tile_mismatch = 1,    // a tick could not be applied; the state is still at the tick before
-  hash_mismatch = 2,    // a tick was applied, but the state hash differs
-  missing_tick = 3,     // a tick was left out
+  join = 0,           // the first of a connection
+  tile_mismatch = 1,  // a tick could not be applied; the state is still at the tick before
+  hash_mismatch = 2,  // a tick was applied, but the state hash differs
+  missing_tick = 3,   // a tick was left out
 };
 inline constexpr std::uint8_t kSnapshotCauseCount = 4;
 const char* toText(SnapshotCause cause);

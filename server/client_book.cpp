@@ -10,9 +10,9 @@
 namespace spoor {
 namespace {
 
-constexpr std::size_t kBulkWindowBytes = std::size_t(256) << 10;          // unacknowledged per client
+constexpr std::size_t kBulkWindowBytes = std::size_t(256) << 10;            // unacknowledged per client
 constexpr std::size_t kTicksOutstandingLimitBytes = std::size_t(16) << 20;  // unacknowledged per client
-constexpr std::size_t kSnapshotsLimit = 16;                                // asked for by one client within ...
+constexpr std::size_t kSnapshotsLimit = 16;                                 // asked for by one client within ...
 constexpr std::int64_t kSnapshotsPeriod_ms = 60000;
 constexpr std::size_t kReportsKept = 1024;
 
@@ -82,16 +82,20 @@ void ClientBook::onMessage(PeerId peer, Client& client, std::span<const std::uin
     return release(peer, CloseCode::refused, is_hello ? "a second hello" : "no hello before the first request");
   }
   switch (kindOf(*message)) {
-    case MessageKind::hello: return onHello(peer, client, std::get<Hello>(*message));
-    case MessageKind::pack_request: return onPackRequest(peer, client);
+    case MessageKind::hello:
+      return onHello(peer, client, std::get<Hello>(*message));
+    case MessageKind::pack_request:
+      return onPackRequest(peer, client);
     case MessageKind::snapshot_request:
       return onSnapshotRequest(peer, client, std::get<SnapshotRequest>(*message), now_ms);
-    case MessageKind::confirm: return onConfirm(peer, client, std::get<Confirm>(*message));
+    case MessageKind::confirm:
+      return onConfirm(peer, client, std::get<Confirm>(*message));
     case MessageKind::welcome:
     case MessageKind::bulk_chunk:
     case MessageKind::tick_update:
     case MessageKind::goodbye:
-    case MessageKind::refused: break;  // decodeMessage does not let a client send these
+    case MessageKind::refused:
+      break;  // decodeMessage does not let a client send these
   }
 }
 
@@ -183,8 +187,10 @@ void ClientBook::onConfirm(PeerId peer, Client& client, const Confirm& confirm) 
 void ClientBook::checkTime(std::int64_t now_ms) {
   std::vector<PeerId> late, silent;
   for (const auto& [peer, client] : clients_) {
-    if (client.stage == Stage::greeting && now_ms - client.connected_ms > options_.hello_limit_ms) late.push_back(peer);
-    else if (transport_.silenceMs(peer) > options_.silence_limit_ms) silent.push_back(peer);
+    if (client.stage == Stage::greeting && now_ms - client.connected_ms > options_.hello_limit_ms)
+      late.push_back(peer);
+    else if (transport_.silenceMs(peer) > options_.silence_limit_ms)
+      silent.push_back(peer);
   }
   for (const PeerId peer : late) release(peer, CloseCode::refused, "no hello in time");
   const std::string reason = "no data for " + std::to_string(options_.silence_limit_ms / 1000) + " s";
@@ -229,8 +235,10 @@ void ClientBook::release(PeerId peer, CloseCode code, const std::string& reason)
   }
   if (code == CloseCode::refused) send(peer, Channel::control, Refused{kProtocolVersion, reason});
   // What is queued for a client that does not take it is not worth keeping.
-  if (code == CloseCode::refused || code == CloseCode::done) transport_.closeAfterQueue(peer, code);
-  else transport_.close(peer, code);
+  if (code == CloseCode::refused || code == CloseCode::done)
+    transport_.closeAfterQueue(peer, code);
+  else
+    transport_.close(peer, code);
   closing_.insert(peer);
   clients_.erase(found);
   trimReports();

@@ -53,12 +53,12 @@ class ClientBook {
   struct Client {
     Stage stage = Stage::greeting;
     std::int64_t connected_ms = 0;
-    std::uint64_t report_number = 0;         // in reports_, from `welcomed` on
+    std::uint64_t report_number = 0;  // in reports_, from `welcomed` on
     bool has_asked_for_pack = false;
     const BulkPackage* sending = nullptr;
-    std::uint64_t sent_bytes = 0;            // of `sending`
-    std::int32_t lowest_confirmation = 0;    // ticks below were confirmed, or came before the snapshot
-    std::deque<std::int64_t> snapshots_ms;   // when it asked for one, the last minute
+    std::uint64_t sent_bytes = 0;           // of `sending`
+    std::int32_t lowest_confirmation = 0;   // ticks below were confirmed, or came before the snapshot
+    std::deque<std::int64_t> snapshots_ms;  // when it asked for one, the last minute
   };
   using Clients = std::map<PeerId, Client>;  // in order of connecting
 

@@ -1,11 +1,10 @@
 // Tile changes, ticks and snapshots as bytes.
-#include "shared/codec/tile_codec.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
+#include "shared/codec/tile_codec.h"
 #include "tests/scenes.h"
 
 namespace spoor::test {
@@ -26,7 +25,8 @@ std::vector<Pose> crossingPoses(const WorldState& state) {
 /// Whatever a state holds, in canonical bytes.
 std::vector<std::uint8_t> bytesOf(const WorldState& state, const BaseTerrain& base) {
   auto bytes = encodeSnapshot(state, base);
-  for (const std::uint64_t value : {stateHash(state), state.tiles_hash, std::uint64_t(state.ledger.initial), std::uint64_t(state.ledger.ground)})
+  for (const std::uint64_t value :
+       {stateHash(state), state.tiles_hash, std::uint64_t(state.ledger.initial), std::uint64_t(state.ledger.ground)})
     for (int shift = 0; shift < 64; shift += 8) bytes.push_back(std::uint8_t(value >> shift));
   return bytes;
 }
@@ -71,7 +71,8 @@ TEST_F(Codec, ChangesDecodeToWhatWasEncoded) {
     for (std::size_t k = 0; k < decoded->size(); ++k) {
       const TileChange &a = (*decoded)[k], &b = result.effect.changes[k];
       EXPECT_EQ(a.at, b.at);
-      EXPECT_EQ(std::tuple(a.base_version, a.new_version, a.wake_mask, a.hash), std::tuple(b.base_version, b.new_version, b.wake_mask, b.hash));
+      EXPECT_EQ(std::tuple(a.base_version, a.new_version, a.wake_mask, a.hash),
+                std::tuple(b.base_version, b.new_version, b.wake_mask, b.hash));
       EXPECT_EQ(std::tuple(a.x, a.y, a.width, a.height), std::tuple(b.x, b.y, b.width, b.height));
       EXPECT_EQ(a.difference, b.difference);
     }
@@ -79,7 +80,8 @@ TEST_F(Codec, ChangesDecodeToWhatWasEncoded) {
 }
 
 TEST_F(Codec, DifferencesOfEveryWidthSurvive) {
-  for (const std::int32_t largest : {1, -1, 127, -128, 128, 32767, -32769, 1 << 23, -(1 << 23) - 1, INT32_MAX, INT32_MIN}) {
+  for (const std::int32_t largest :
+       {1, -1, 127, -128, 128, 32767, -32769, 1 << 23, -(1 << 23) - 1, INT32_MAX, INT32_MIN}) {
     TileChange change;
     change.new_version = 3;
     change.x = 61;
@@ -202,7 +204,8 @@ TEST_F(Codec, DamagedChangesNeverHarmTheState) {
     } else if (round % 10 == 1) {
       bytes.resize(engine() % (bytes.size() + 40));
     }
-    for (auto left = 1 + engine() % 3; left > 0 && !bytes.empty(); --left) bytes[engine() % bytes.size()] ^= std::uint8_t(1 + engine() % 255);
+    for (auto left = 1 + engine() % 3; left > 0 && !bytes.empty(); --left)
+      bytes[engine() % bytes.size()] ^= std::uint8_t(1 + engine() % 255);
     const auto changes = decodeTiles(bytes, world_.pack);
     if (!changes || !applyTiles(mirror_, world_.base, *changes)) continue;
     // Every tile's own hash was right, so its cells are: as after the good tick, or, where it is not named, as before.
@@ -210,7 +213,8 @@ TEST_F(Codec, DamagedChangesNeverHarmTheState) {
     ASSERT_TRUE(recount(mirror_)) << "round " << round;
     for (const Tile* tile : mirror_.tiles.sorted()) {
       const std::uint64_t hash = simulation_.state().tiles.find(tile->at)->hash;
-      const bool named = std::ranges::any_of(*changes, [tile](const TileChange& change) { return change.at == tile->at; });
+      const bool named =
+          std::ranges::any_of(*changes, [tile](const TileChange& change) { return change.at == tile->at; });
       ASSERT_TRUE(!named || tile->hash == hash) << "round " << round;
     }
     mirror_ = std::move(*decodeSnapshot(before, world_.id, world_.base));
@@ -244,7 +248,8 @@ TEST_F(Codec, SnapshotDecodeRejectsEveryTruncationAndATrailingByte) {
   follow(4);
   auto bytes = encodeSnapshot(simulation_.state(), world_.base);
   for (std::size_t size = 0; size < bytes.size(); size += size < 400 ? 1 : 97)
-    ASSERT_FALSE(decodeSnapshot(std::span(bytes).first(size), world_.id, world_.base)) << size << " of " << bytes.size();
+    ASSERT_FALSE(decodeSnapshot(std::span(bytes).first(size), world_.id, world_.base))
+        << size << " of " << bytes.size();
   bytes.push_back(0);
   EXPECT_FALSE(decodeSnapshot(bytes, world_.id, world_.base));
 }

@@ -29,9 +29,9 @@ std::vector<Cost> drive(const World& world, int ticks) {
     const auto result = simulation.step(poses);
     EXPECT_TRUE(result);
     const TickEffect& effect = result->effect;
-    costs.push_back({effect.active_cells, effect.domain_cells, effect.penetrating_cells, effect.pairs_visited, effect.bytes_moved,
-                     result->update.tiles.size(), simulation.state().tiles.size(), simulation.state().tiles.memoryBytes(),
-                     simulation.state().tiles.awake().size()});
+    costs.push_back({effect.active_cells, effect.domain_cells, effect.penetrating_cells, effect.pairs_visited,
+                     effect.bytes_moved, result->update.tiles.size(), simulation.state().tiles.size(),
+                     simulation.state().tiles.memoryBytes(), simulation.state().tiles.awake().size()});
   }
   return costs;
 }
@@ -52,7 +52,8 @@ TEST(Cost, ACarCostsTheSameInAWorldAThousandTimesAsLarge) {
 
 TEST(Cost, ACarCostsTheSameAnywhereInALargeWorld) {
   constexpr int kTile = 64 * 1000;
-  const World corner(carPack(65536, 5 * kTile + 500, 7 * kTile, true)), middle(carPack(65536, 505 * kTile + 500, 507 * kTile, true));
+  const World corner(carPack(65536, 5 * kTile + 500, 7 * kTile, true)),
+      middle(carPack(65536, 505 * kTile + 500, 507 * kTile, true));
   const auto expected = drive(corner, 40), found = drive(middle, 40);
   for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], expected[i]) << "tick " << i + 1;
 }

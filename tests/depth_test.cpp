@@ -103,13 +103,19 @@ void checkRandomBodies(int width, int height, int size_cells, std::uint32_t seed
     StageRig rig(world, 2);
     DenseWorld dense = denseCopy(rig);
     for (int i = 0; i < 5; ++i) {
-      const Pose pose{pick(-2000, (width + 2) * 1000), pick(-2000, (height + 2) * 1000), pick(-5000, 5000), Turn(engine()),
-                      Turn(engine()), Turn(engine()), Turn(engine())};
+      const Pose pose{pick(-2000, (width + 2) * 1000),
+                      pick(-2000, (height + 2) * 1000),
+                      pick(-5000, 5000),
+                      Turn(engine()),
+                      Turn(engine()),
+                      Turn(engine()),
+                      Turn(engine())};
       bodies.push_back(placeBody(world.pack, i, pose));
       oracleDepth(dense, placeForOracle(world.pack, i, pose));
     }
     rig.press(bodies);
-    ASSERT_EQ(rig.cells(rig.area.underside), insideCells(dense, dense.underside)) << width << " x " << height << ", round " << round;
+    ASSERT_EQ(rig.cells(rig.area.underside), insideCells(dense, dense.underside))
+        << width << " x " << height << ", round " << round;
   }
 }
 
@@ -119,6 +125,30 @@ TEST(Depth, EqualsTheOracleOnWorldsOfAnySize) {
 }
 
 TEST(Depth, EqualsTheOracleForABodyOfThreeTiles) { checkRandomBodies(203, 197, 200, 3); }
+
+TEST(Depth, DomainsThatShareRowsOfATileKeepTheLowestUndersideOfEach) {
+  ScenePack pack = flatPack(128, 64);
+  for (int i = 0; i < 20; ++i) addBody(pack, boxMesh(1500, 60000, 3000), 3500 + i * 6000, 32000, i * 7919 % 20000);
+  const World world(std::move(pack));
+  const auto poses = initialState(world.id, world.base).poses;
+  SubStep sub_step;
+  for (int i = 0; i < 20; ++i) {
+    sub_step.bodies.push_back(placeBody(world.pack, i, poses[std::size_t(i)]));
+    const CellBox& box = sub_step.bodies.back().box;
+    sub_step.domains.push_back({{box.x0 - 1, 0, box.x1 + 1, 64}, {i}});
+  }
+  StageRig rig(world, 4);
+  for (int round = 0; round < 400; ++round) {
+    rig.area.clearUnderside(world.pack, rig.pool);
+    runDepth(rig.context, sub_step);
+    for (int y = 0; y < 64; ++y)
+      for (const int x : {0, 64}) {
+        const std::int32_t* cells = &rig.area.underside[rig.area.offsetAt(x, y)];
+        ASSERT_EQ(rig.area.lowest_underside[rig.area.segmentAt(x, y)], *std::min_element(cells, cells + 64))
+            << "round " << round;
+      }
+  }
+}
 
 /// A random triangle, corners within a window of `span` subcells; some small ones, some with level or upright edges.
 std::array<rules::RasterPoint, 3> randomTriangle(std::mt19937& engine, int span) {
@@ -145,7 +175,8 @@ TEST(Depth, ASpanHoldsExactlyTheCentresInsideTheTriangle) {
     for (int y = -cells - 1; y <= cells; ++y) {
       const auto span = rules::triangleSpan(triangle, y, {-cells - 1, cells + 1});
       for (int x = -cells - 1; x <= cells; ++x)
-        ASSERT_EQ(x >= span.begin && x < span.end, coversCentre(a, b, c, x, y)) << "round " << round << ", cell " << x << ", " << y;
+        ASSERT_EQ(x >= span.begin && x < span.end, coversCentre(a, b, c, x, y))
+            << "round " << round << ", cell " << x << ", " << y;
     }
   }
 }
@@ -157,14 +188,17 @@ TEST(Depth, ACentreOnASharedEdgeBelongsToOneTriangle) {
     // A fan around one point, all corners on cell centres: a centre strictly inside the fan lies in exactly one part.
     const auto snap = [&] { return int(engine() % 17) * 256 - 8 * 256 + 128; };
     const rules::RasterPoint middle{128, 128, 0};
-    const rules::RasterPoint ring[] = {{std::abs(snap()) + 256, snap(), 0}, {snap(), std::abs(snap()) + 256, 0},
-                                       {-std::abs(snap()) - 256, snap(), 0}, {snap(), -std::abs(snap()) - 256, 0}};
+    const rules::RasterPoint ring[] = {{std::abs(snap()) + 256, snap(), 0},
+                                       {snap(), std::abs(snap()) + 256, 0},
+                                       {-std::abs(snap()) - 256, snap(), 0},
+                                       {snap(), -std::abs(snap()) - 256, 0}};
     for (int y = -9; y <= 9; ++y)
       for (int x = -9; x <= 9; ++x) {
         int parts = 0, touching = 0;
         for (int i = 0; i < 4; ++i) {
           const auto &p = ring[i], &q = ring[(i + 1) % 4];
-          const std::int64_t area = std::int64_t(p.x - middle.x) * (q.y - middle.y) - std::int64_t(p.y - middle.y) * (q.x - middle.x);
+          const std::int64_t area =
+              std::int64_t(p.x - middle.x) * (q.y - middle.y) - std::int64_t(p.y - middle.y) * (q.x - middle.x);
           if (area <= 0) goto next_round;  // not a fan
           parts += coversCentre(middle, p, q, x, y) ? 1 : 0;
           const std::int64_t side = std::int64_t(p.x - middle.x) * (y * 256) - std::int64_t(p.y - middle.y) * (x * 256);
@@ -218,7 +252,8 @@ TEST(Depth, AnEdgeCoversEveryCellThatItsPointsLieIn) {
       ASSERT_GE(column.last, floorDiv(v, 256)) << "round " << round;
       ASSERT_LE(column.height, z) << "round " << round;
       const auto same = rules::edgeColumn(back, int(floorDiv(u, 256)));
-      ASSERT_TRUE(column.first == same.first && column.last == same.last && column.height == same.height) << "round " << round;
+      ASSERT_TRUE(column.first == same.first && column.last == same.last && column.height == same.height)
+          << "round " << round;
     }
   }
 }

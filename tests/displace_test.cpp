@@ -1,10 +1,11 @@
 // Stage displace: soil goes to its nearest free cell as far as there is room, and none is lost.
+#include "shaders/rules/displace.h"
+
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <random>
 
-#include "shaders/rules/displace.h"
 #include "tests/stage_rig.h"
 
 namespace spoor::test {
@@ -99,12 +100,14 @@ void checkRandomWorld(int columns, int rows, std::uint32_t seed) {
   oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.obstacle_threshold_q);
   const auto after = rig.cells(rig.area.height);
   ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
-  ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)), std::accumulate(before.begin(), before.end(), std::int64_t(0)));
+  ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)),
+            std::accumulate(before.begin(), before.end(), std::int64_t(0)));
 }
 
 TEST(Displace, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
   for (std::uint32_t seed = 0; seed < 12; ++seed)
-    for (const auto& [columns, rows] : {std::pair{77, 41}, {1, 200}, {65, 1}, {9, 66}}) checkRandomWorld(columns, rows, seed);
+    for (const auto& [columns, rows] : {std::pair{77, 41}, {1, 200}, {65, 1}, {9, 66}})
+      checkRandomWorld(columns, rows, seed);
 }
 
 }  // namespace

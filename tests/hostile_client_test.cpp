@@ -87,11 +87,21 @@ TEST(Hostile, RandomMessagesNeverStopASession) {
     rig.play(1);
     for (int said = 0; said < 8; ++said) {
       switch (random() % 5) {
-        case 0: hostile.say(Hello{1, "x"}); break;
-        case 1: hostile.say(PackRequest{}); break;
-        case 2: hostile.say(SnapshotRequest{SnapshotCause(random() % 4)}); break;
-        case 3: hostile.say(Confirm{std::int32_t(random() % 80), random()}); break;
-        default: hostile.sayBytes(std::vector<std::uint8_t>(random() % 40, std::uint8_t(random()))); break;
+        case 0:
+          hostile.say(Hello{1, "x"});
+          break;
+        case 1:
+          hostile.say(PackRequest{});
+          break;
+        case 2:
+          hostile.say(SnapshotRequest{SnapshotCause(random() % 4)});
+          break;
+        case 3:
+          hostile.say(Confirm{std::int32_t(random() % 80), random()});
+          break;
+        default:
+          hostile.sayBytes(std::vector<std::uint8_t>(random() % 40, std::uint8_t(random())));
+          break;
       }
     }
   }

@@ -1,4 +1,7 @@
 // Scene files and bare terrains become packs, and whatever is wrong with them is said in one line.
+#include <fstream>
+#include <iterator>
+
 #include "server/import/importer.h"
 #include "server/import/mesh_file.h"
 #include "server/import/path_maker.h"
@@ -318,6 +321,17 @@ TEST_F(Import, SmoothPathKeepsItsPointsAndItsLimit) {
   for (std::size_t i = 1; i < path.size(); ++i) EXPECT_LT(pathLength({path[i - 1], path[i]}, false), 0.4);
   EXPECT_LE(smoothPath({{0, 0}, {1e5, 0}, {1e5, 1e5}}, true).size(), kSmoothPointLimit);
   EXPECT_GT(smoothPath({{0, 0}, {1e5, 0}, {1e5, 1e5}}, true).size(), kSmoothPointLimit / 2);
+}
+
+TEST_F(Import, ExampleScenesMakeTheCommittedPacks) {
+  for (const char* name : kScenes) {
+    const Result<ImportedScene> scene = importScene(scenePath(name));
+    ASSERT_TRUE(scene) << scene.error();
+    std::ifstream file(std::string(SPOOR_GOLDEN_DIR) + "/" + name + ".pack", std::ios::binary);
+    const std::vector<std::uint8_t> committed{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(toText(packId(encodePack(scene->pack))), toText(packId(committed)))
+        << name << ": import it to tests/golden/" << name << ".pack if the scene was meant to change";
+  }
 }
 
 }  // namespace

@@ -71,11 +71,13 @@ TEST_P(EveryKernels, SumsAndEndsOfRows) {
 TEST_P(EveryKernels, LowersAlongARow) {
   for (int n = 0; n <= kLongestRow; ++n) {
     const Cells before = numbers(n, 50000);
-    const int first = int(engine_() % 20000) - 10000, step = int(engine_() % 600) - 300, fraction = int(engine_() % 65536);
+    const int first = int(engine_() % 20000) - 10000, step = int(engine_() % 600) - 300,
+              fraction = int(engine_() % 65536);
     Cells cells = before;
     kernels_.lowerAlong(cells.data(), n, first, step, fraction, -12000, 11000);
     for (int i = 0; i < n; ++i)
-      ASSERT_EQ(cells[std::size_t(i)], std::min(before[std::size_t(i)], rules::triangleHeightAlong(first, step, fraction, i, -12000, 11000)))
+      ASSERT_EQ(cells[std::size_t(i)],
+                std::min(before[std::size_t(i)], rules::triangleHeightAlong(first, step, fraction, i, -12000, 11000)))
           << "cell " << i << " of " << n;
   }
 }
@@ -102,7 +104,8 @@ TEST_P(EveryKernels, NearestFreeRowOfEachColumn) {
     for (Cells& row : overlap)
       for (int i = 0; i < n; ++i) row.push_back(engine_() % 12 == 0 && i % 7 != 0 ? rules::kFree : int(engine_() % 2));
     Cells last(std::size_t(n), kNoFreeRow);
-    for (int y = 0; y < kRows; ++y) kernels_.carryFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
+    for (int y = 0; y < kRows; ++y)
+      kernels_.carryFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
     last.assign(std::size_t(n), kNoFreeRow);
     for (int y = kRows - 1; y >= 0; --y)
       kernels_.mergeFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
@@ -110,7 +113,8 @@ TEST_P(EveryKernels, NearestFreeRowOfEachColumn) {
       for (int i = 0; i < n; ++i) {
         int expected = kNoFreeRow;
         for (int free = 0; free < kRows; ++free)
-          if (overlap[std::size_t(free)][std::size_t(i)] == rules::kFree && std::abs(free - y) < std::abs(expected - y)) expected = free;
+          if (overlap[std::size_t(free)][std::size_t(i)] == rules::kFree && std::abs(free - y) < std::abs(expected - y))
+            expected = free;
         ASSERT_EQ(nearest[std::size_t(y)][std::size_t(i)], expected) << "column " << i << " of " << n << ", row " << y;
       }
   }
@@ -136,9 +140,10 @@ TEST_P(EveryKernels, ExchangesBetweenTwoRows) {
         const int room_b = beneath ? rules::roomBeneath(b[i], under_b[i], 50) : rules::kHeightLimit;
         moved |= exchangeByRule(expected_a[i], expected_b[i], rock_a[i], rock_b[i], room_a, room_b, threshold);
       }
-      const bool reported = beneath ? kernels_.exchangeRowsBeneath(a.data(), b.data(), rock_a.data(), rock_b.data(), under_a.data(),
-                                                                   under_b.data(), n, threshold, 50)
-                                    : kernels_.exchangeRows(a.data(), b.data(), rock_a.data(), rock_b.data(), n, threshold);
+      const bool reported = beneath
+                                ? kernels_.exchangeRowsBeneath(a.data(), b.data(), rock_a.data(), rock_b.data(),
+                                                               under_a.data(), under_b.data(), n, threshold, 50)
+                                : kernels_.exchangeRows(a.data(), b.data(), rock_a.data(), rock_b.data(), n, threshold);
       ASSERT_EQ(a, expected_a) << n << (beneath ? " beneath" : "");
       ASSERT_EQ(b, expected_b) << n << (beneath ? " beneath" : "");
       ASSERT_EQ(reported, moved) << n << (beneath ? " beneath" : "");
@@ -157,14 +162,16 @@ TEST_P(EveryKernels, ExchangesWithinARow) {
         const int room_b = beneath ? rules::roomBeneath(cells[i + 1], under[i + 1], 50) : rules::kHeightLimit;
         moved |= exchangeByRule(expected[i], expected[i + 1], rock[i], rock[i + 1], room_a, room_b, 300);
       }
-      const bool reported = beneath ? kernels_.exchangeWithinBeneath(cells.data(), rock.data(), under.data(), pairs, 300, 50)
-                                    : kernels_.exchangeWithin(cells.data(), rock.data(), pairs, 300);
+      const bool reported =
+          beneath ? kernels_.exchangeWithinBeneath(cells.data(), rock.data(), under.data(), pairs, 300, 50)
+                  : kernels_.exchangeWithin(cells.data(), rock.data(), pairs, 300);
       ASSERT_EQ(cells, expected) << pairs << (beneath ? " beneath" : "");
       ASSERT_EQ(reported, moved) << pairs << (beneath ? " beneath" : "");
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Available, EveryKernels, ::testing::ValuesIn(availableKernels().begin(), availableKernels().end()),
+INSTANTIATE_TEST_SUITE_P(Available, EveryKernels,
+                         ::testing::ValuesIn(availableKernels().begin(), availableKernels().end()),
                          [](const auto& set) { return std::string(set.param->name); });
 
 TEST(Kernels, BaselineIsAlwaysThereAndTheFastestIsTheLast) {
@@ -172,7 +179,8 @@ TEST(Kernels, BaselineIsAlwaysThereAndTheFastestIsTheLast) {
   EXPECT_STREQ(availableKernels().front()->name, "baseline");
   EXPECT_EQ(&kernels(), availableKernels().back());
   for (const char* name : {"avx2", "avx512"}) {
-    const bool there = std::ranges::any_of(availableKernels(), [name](const Kernels* set) { return set->name == std::string(name); });
+    const bool there =
+        std::ranges::any_of(availableKernels(), [name](const Kernels* set) { return set->name == std::string(name); });
     if (!there) std::cout << "this processor does not run the " << name << " kernels: not tested\n";
   }
 }

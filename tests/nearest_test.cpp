@@ -1,9 +1,10 @@
 // Stage nearest: the exact nearest free cell, ties included, against a search over all cells.
+#include "shaders/rules/nearest.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "shaders/rules/nearest.h"
 #include "tests/stage_rig.h"
 
 namespace spoor::test {
@@ -21,8 +22,8 @@ struct Search {
     domain.overlap = std::move(overlap);
     for (int y = 0; y < rows; ++y)
       domain.penetrating_in_row.push_back(int(std::ranges::count_if(
-          domain.overlap.begin() + std::ptrdiff_t(y) * columns, domain.overlap.begin() + std::ptrdiff_t(y + 1) * columns,
-          [](int value) { return value > 0; })));
+          domain.overlap.begin() + std::ptrdiff_t(y) * columns,
+          domain.overlap.begin() + std::ptrdiff_t(y + 1) * columns, [](int value) { return value > 0; })));
     runNearest(context, domain);
   }
 
@@ -49,17 +50,17 @@ void checkAgainstAllCells(const Search& search, const std::string& name) {
   const auto expected = oracleNearest(dense, search.domain.overlap);
   for (std::size_t i = 0; i < expected.size(); ++i)
     if (search.domain.overlap[i] > 0) {
-      ASSERT_EQ(search.domain.target[i], expected[i]) << name << ", cell " << int(i) % columns << ", " << int(i) / columns;
+      ASSERT_EQ(search.domain.target[i], expected[i])
+          << name << ", cell " << int(i) % columns << ", " << int(i) / columns;
     }
 }
 
 TEST(Nearest, FiveByFiveCells) {
-  const Search search(5, 5,
-                      {kFree, kWall, kHere, kHere, kFree,  //
-                       kWall, kHere, kHere, kHere, kHere,  //
-                       kHere, kHere, kHere, kWall, kHere,  //
-                       kHere, kHere, kWall, kFree, kHere,  //
-                       kFree, kHere, kHere, kHere, kHere});
+  const Search search(5, 5, {kFree, kWall, kHere, kHere, kFree,  //
+                             kWall, kHere, kHere, kHere, kHere,  //
+                             kHere, kHere, kHere, kWall, kHere,  //
+                             kHere, kHere, kWall, kFree, kHere,  //
+                             kFree, kHere, kHere, kHere, kHere});
   EXPECT_EQ(search.of(3, 0), std::pair(4, 0));
   EXPECT_EQ(search.of(2, 0), std::pair(0, 0));  // as near as (4, 0): the lower column
   EXPECT_EQ(search.of(1, 1), std::pair(0, 0));
@@ -108,8 +109,9 @@ TEST(Nearest, EqualsASearchOverAllCellsForEveryDensity) {
         std::vector<std::int32_t> overlap;
         for (int i = 0; i < columns * rows; ++i)
           overlap.push_back(int(engine() % 1000) < free_per_mille ? kFree : engine() % 5 == 0 ? kWall : kHere);
-        checkAgainstAllCells(Search(columns, rows, overlap, 1 + round % 3),
-                             std::to_string(columns) + " x " + std::to_string(rows) + ", free " + std::to_string(free_per_mille));
+        checkAgainstAllCells(
+            Search(columns, rows, overlap, 1 + round % 3),
+            std::to_string(columns) + " x " + std::to_string(rows) + ", free " + std::to_string(free_per_mille));
       }
 }
 
@@ -133,7 +135,8 @@ TEST(Nearest, TheSwitchBetweenTwoColumnsIsTheFirstPlaceWhereTheSecondIsBefore) {
   const auto pick = [&](int range) { return int(engine() % std::uint32_t(range)); };
   for (int round = 0; round < 20000; ++round) {
     const int range = round % 2 == 0 ? 12 : 16384;
-    const int ax = pick(range - 1), bx = ax + 1 + pick(range - 1 - ax), ay = pick(range), by = pick(range), y = pick(range);
+    const int ax = pick(range - 1), bx = ax + 1 + pick(range - 1 - ax), ay = pick(range), by = pick(range),
+              y = pick(range);
     const int at = rules::nearestSwitch(y, ax, ay, bx, by);
     if (std::abs(at) > 16384) continue;  // outside every row
     ASSERT_TRUE(rules::nearestBefore(at, y, bx, by, ax, ay)) << "round " << round;

@@ -57,7 +57,8 @@ int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const 
 }
 
 /// Boxes of the bodies that take part; boxes that overlap become the box of both, until none do.
-std::vector<Oracle::Box> Oracle::searchDomains(const std::vector<bool>& takes_part, const std::vector<Pose>& poses) const {
+std::vector<Oracle::Box> Oracle::searchDomains(const std::vector<bool>& takes_part,
+                                               const std::vector<Pose>& poses) const {
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Box box = takes_part[i] ? searchBox(int(i), poses[i]) : Box{0, 0, 0, 0};
@@ -164,8 +165,8 @@ void Oracle::step(const std::vector<Pose>& poses) {
   ++tick_;
 }
 
-/// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box of
-/// its changed cells.
+/// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box
+/// of its changed cells.
 void Oracle::wake(const std::vector<std::int32_t>& before) {
   const int reach = std::clamp(base_->pack().sweeps_per_tick, 1, kSize);
   for (const TileCoordinate tile : active_tiles_) {

@@ -12,8 +12,8 @@ namespace spoor::test {
 /// A whole world as plain arrays, padded to whole tiles. Slow and obvious on purpose: what the backends are compared
 /// with. Cells outside the world hold height 0 and no soil, and nothing ever moves into or out of them.
 struct DenseWorld {
-  int columns = 0, rows = 0;                // of the arrays: whole tiles
-  int inside_columns = 0, inside_rows = 0;  // of the world
+  int columns = 0, rows = 0;                             // of the arrays: whole tiles
+  int inside_columns = 0, inside_rows = 0;               // of the world
   std::vector<std::int32_t> height, bedrock, underside;  // [rows * columns], 0.1 mm
   std::vector<std::uint8_t> active;                      // [rows * columns] 1: the cell's tile is active
 
@@ -36,7 +36,8 @@ OracleBody placeForOracle(const ScenePack& pack, int body_index, const Pose& pos
 bool coversCentre(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x, int y);
 
 /// floor of the plane's height over that centre, exactly. The triangle must have an area.
-std::int64_t planeHeight(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x, int y);
+std::int64_t planeHeight(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x,
+                         int y);
 
 /// Stage depth: lowers the world's undersides to a body, looking at every cell near it.
 void oracleDepth(DenseWorld& world, const OracleBody& body);
@@ -98,8 +99,8 @@ class Oracle {
   TileCoordinate extent_;
   DenseWorld world_;
   std::vector<std::int32_t> base_height_;
-  std::vector<std::uint8_t> live_;   // [tiles]
-  std::vector<WakeMask> wake_;       // [tiles]
+  std::vector<std::uint8_t> live_;  // [tiles]
+  std::vector<WakeMask> wake_;      // [tiles]
   std::vector<TileCoordinate> active_tiles_;
   std::vector<std::size_t> crowded_;
   std::vector<Pose> poses_, previous_poses_;

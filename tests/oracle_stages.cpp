@@ -29,8 +29,8 @@ void lower(std::int32_t& underside, std::int64_t height) {
   underside = std::min(underside, std::int32_t(limited));
 }
 
-void lowerToTriangle(DenseWorld& world, const OracleBody& body, const std::array<std::uint32_t, 3>& corners, int x0, int y0,
-                     int x1, int y1) {
+void lowerToTriangle(DenseWorld& world, const OracleBody& body, const std::array<std::uint32_t, 3>& corners, int x0,
+                     int y0, int x1, int y1) {
   const auto &a = body.points[corners[0]], &b = body.points[corners[1]], &c = body.points[corners[2]];
   if (turnArea(a, b, c.x, c.y) == 0) return;
   const rules::RasterTriangle triangle = rules::rasterTriangle(a, b, c);
@@ -41,15 +41,15 @@ void lowerToTriangle(DenseWorld& world, const OracleBody& body, const std::array
       if (!world.inside(x + body.origin_x, y + body.origin_y) || !coversCentre(a, b, c, x, y)) continue;
       first = std::min(first, x);
       const int start = rules::triangleHeight(triangle, first, y);
-      const int height = rules::triangleHeightAlong(start, triangle.step, triangle.step_fraction, x - first, triangle.lowest,
-                                                    triangle.highest);
+      const int height = rules::triangleHeightAlong(start, triangle.step, triangle.step_fraction, x - first,
+                                                    triangle.lowest, triangle.highest);
       lower(world.underside[world.at(x + body.origin_x, y + body.origin_y)], body.z_q + height);
     }
   }
 }
 
-void lowerToEdge(DenseWorld& world, const OracleBody& body, const std::array<std::uint32_t, 2>& ends, int x0, int y0, int x1,
-                 int y1) {
+void lowerToEdge(DenseWorld& world, const OracleBody& body, const std::array<std::uint32_t, 2>& ends, int x0, int y0,
+                 int x1, int y1) {
   const rules::RasterEdge edge = rules::rasterEdge(body.points[ends[0]], body.points[ends[1]]);
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
@@ -110,8 +110,8 @@ OracleBody placeForOracle(const ScenePack& pack, int body_index, const Pose& pos
     // From the world's corner in subcells, rounded down; then from the origin's corner.
     const std::int64_t x = floorDiv((std::int64_t(pose.x_q) + turned[0]) * kSubcells, pack.cell_q);
     const std::int64_t y = floorDiv((std::int64_t(pose.y_q) + turned[1]) * kSubcells, pack.cell_q);
-    body.points.push_back({int(x - std::int64_t(body.origin_x) * kSubcells), int(y - std::int64_t(body.origin_y) * kSubcells),
-                           turned[2]});
+    body.points.push_back({int(x - std::int64_t(body.origin_x) * kSubcells),
+                           int(y - std::int64_t(body.origin_y) * kSubcells), turned[2]});
   }
   return body;
 }
@@ -124,11 +124,13 @@ bool coversCentre(const rules::RasterPoint& a, const rules::RasterPoint& b, cons
   return isInside(a, second, px, py) && isInside(second, third, px, py) && isInside(third, a, px, py);
 }
 
-std::int64_t planeHeight(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x, int y) {
+std::int64_t planeHeight(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x,
+                         int y) {
   // Barycentric: the height is the corners' heights weighted by the areas opposite to them.
   const int px = centreOf(x), py = centreOf(y);
   Wide area = turnArea(a, b, c.x, c.y);
-  Wide sum = Wide(turnArea(b, c, px, py)) * a.z + Wide(turnArea(c, a, px, py)) * b.z + Wide(turnArea(a, b, px, py)) * c.z;
+  Wide sum =
+      Wide(turnArea(b, c, px, py)) * a.z + Wide(turnArea(c, a, px, py)) * b.z + Wide(turnArea(a, b, px, py)) * c.z;
   if (area < 0) {
     area = -area;
     sum = -sum;
@@ -224,11 +226,13 @@ void oracleRelax(DenseWorld& world, const ScenePack& pack, int sweep_count) {
     for (const Matching& matching : order)
       for (int y = 0; y < world.inside_rows; ++y)
         for (int x = 0; x < world.inside_columns; ++x) {
-          if (((matching.by_row ? y : x) & 1) != matching.parity || !world.inside(x + matching.dx, y + matching.dy)) continue;
+          if (((matching.by_row ? y : x) & 1) != matching.parity || !world.inside(x + matching.dx, y + matching.dy))
+            continue;
           const std::size_t a = world.at(x, y), b = world.at(x + matching.dx, y + matching.dy);
           if (world.active[a] == 0 || world.active[b] == 0) continue;
           const bool diagonal = matching.dx != 0 && matching.dy != 0;
-          exchangePair(world, a, b, diagonal ? pack.diagonal_threshold_q : pack.slope_threshold_q, pack.obstacle_threshold_q);
+          exchangePair(world, a, b, diagonal ? pack.diagonal_threshold_q : pack.slope_threshold_q,
+                       pack.obstacle_threshold_q);
         }
 }
 

@@ -1,9 +1,10 @@
 // Stage penetration: which cells a body overlaps, and by how much.
+#include "shaders/rules/penetration.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "shaders/rules/penetration.h"
 #include "tests/stage_rig.h"
 
 namespace spoor::test {
@@ -18,15 +19,15 @@ struct Case {
 
 TEST(Penetration, ClassifiesACellByTheGapAboveIt) {
   const Case cases[] = {
-      {100, -50, kNone, 0, rules::kFree},        // nothing above
-      {100, -50, 30, 0, 70},                     // soil above the underside
-      {100, -50, -400, 0, 150},                  // no more than there is soil
-      {100, 100, -400, 0, rules::kObstacle},     // bare rock that a body reaches into
-      {100, -50, 100, 0, rules::kObstacle},      // the underside just touches
-      {100, -50, 101, 0, rules::kFree},          // one unit of room is room
-      {100, -50, 110, 10, rules::kObstacle},     // a gap of the threshold is none yet
-      {100, -50, 111, 10, rules::kFree},         // one more is
-      {100, -50, 99, 1000, 1},                   // the threshold does not hide an overlap
+      {100, -50, kNone, 0, rules::kFree},     // nothing above
+      {100, -50, 30, 0, 70},                  // soil above the underside
+      {100, -50, -400, 0, 150},               // no more than there is soil
+      {100, 100, -400, 0, rules::kObstacle},  // bare rock that a body reaches into
+      {100, -50, 100, 0, rules::kObstacle},   // the underside just touches
+      {100, -50, 101, 0, rules::kFree},       // one unit of room is room
+      {100, -50, 110, 10, rules::kObstacle},  // a gap of the threshold is none yet
+      {100, -50, 111, 10, rules::kFree},      // one more is
+      {100, -50, 99, 1000, 1},                // the threshold does not hide an overlap
       {rules::kHeightLimit, -5, -rules::kHeightLimit, 0, rules::kHeightLimit + 5},
   };
   for (const Case& c : cases)
@@ -45,11 +46,11 @@ TEST(Penetration, FiveByFiveCellsUnderASlantedBody) {
                     kNone, 1050,  1051,  kDeep, kNone,  //
                     kNone, kNone, kNone, kNone, kNone});
   runPenetration(rig.context, rig.domain);
-  EXPECT_EQ(rig.domain.overlap, (std::vector<std::int32_t>{-1, -1, -1,  -1,  -1,  //
+  EXPECT_EQ(rig.domain.overlap, (std::vector<std::int32_t>{-1, -1,  -1,  -1,  -1,  //
                                                            -1, 100, 200, 300, -1,  //
-                                                           -1, 0,  500, 600, -1,  //
-                                                           -1, 0,  -1,  600, -1,  //
-                                                           -1, -1, -1,  -1,  -1}));
+                                                           -1, 0,   500, 600, -1,  //
+                                                           -1, 0,   -1,  600, -1,  //
+                                                           -1, -1,  -1,  -1,  -1}));
   EXPECT_EQ(rig.domain.penetrating_in_row, (std::vector<int>{0, 3, 2, 1, 0}));
   EXPECT_EQ(rig.domain.penetrating_count, 6);
 }
@@ -62,7 +63,8 @@ TEST(Penetration, EqualsTheOracleOnWorldsOfAnySize) {
     const World world(std::move(pack));
     StageRig rig(world, 2);
     std::vector<std::int32_t> underside;
-    for (int i = 0; i < columns * rows; ++i) underside.push_back(engine() % 3 == 0 ? kNone : int(engine() % 6000) - 3000);
+    for (int i = 0; i < columns * rows; ++i)
+      underside.push_back(engine() % 3 == 0 ? kNone : int(engine() % 6000) - 3000);
     rig.setUnderside(underside);
     runPenetration(rig.context, rig.domain);
     const DenseWorld dense = denseCopy(rig);

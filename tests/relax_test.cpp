@@ -35,7 +35,9 @@ TEST(Relax, RoomBeneathABodyIsTheGapIfItIsOverTheThreshold) {
 }
 
 /// Sum of the cells.
-std::int64_t sumOf(const std::vector<std::int32_t>& cells) { return std::accumulate(cells.begin(), cells.end(), std::int64_t(0)); }
+std::int64_t sumOf(const std::vector<std::int32_t>& cells) {
+  return std::accumulate(cells.begin(), cells.end(), std::int64_t(0));
+}
 
 TEST(Relax, OneSweepOverAColumnOnFiveByFiveCells) {
   std::vector<std::int32_t> ground(25, 0);
@@ -86,7 +88,8 @@ void checkRandomWorld(int columns, int rows, std::uint32_t seed) {
 
 TEST(Relax, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
   for (std::uint32_t seed = 0; seed < 14; ++seed)
-    for (const auto& [columns, rows] : {std::pair{77, 131}, {1, 200}, {65, 1}, {129, 66}}) checkRandomWorld(columns, rows, seed);
+    for (const auto& [columns, rows] : {std::pair{77, 131}, {1, 200}, {65, 1}, {129, 66}})
+      checkRandomWorld(columns, rows, seed);
 }
 
 TEST(Relax, SweepsInPartsEqualSweepsAtOnce) {
@@ -99,7 +102,8 @@ TEST(Relax, SweepsInPartsEqualSweepsAtOnce) {
   EXPECT_EQ(at_once.cells(at_once.area.height), in_parts.cells(in_parts.area.height));
 }
 
-/// Tiles of a checkerboard with one more: runs that meet at corners only, gaps within a band, bands without a neighbour.
+/// Tiles of a checkerboard with one more: runs that meet at corners only, gaps within a band, bands without a
+/// neighbour.
 TEST(Relax, FlowCrossesABorderOnlyBetweenActiveTiles) {
   const World world(noisePack(64 * 4 + 9, 64 * 4 + 5, 6, -30000, 30000, 100000));
   for (const std::uint32_t pattern : {0x5a5au, 0xa5a5u, 0x9009u, 0xf00fu, 0x8421u, 0x1248u, 0x6ff6u}) {
@@ -120,7 +124,8 @@ TEST(Relax, FlowCrossesABorderOnlyBetweenActiveTiles) {
     for (const TileCoordinate tile : plan.active)
       for (int i = 0; i < rules::kTileCells; ++i) {
         const int x = tile.x * 64 + i % 64, y = tile.y * 64 + i / 64;
-        ASSERT_EQ(area.height[area.offsetAt(x, y)], dense.height[dense.at(x, y)]) << x << ", " << y << " of " << pattern;
+        ASSERT_EQ(area.height[area.offsetAt(x, y)], dense.height[dense.at(x, y)])
+            << x << ", " << y << " of " << pattern;
       }
   }
 }

@@ -90,7 +90,14 @@ Mesh tetrahedronMesh(int size) {
 Mesh archMesh(int length, int width, int height) {
   const int x = length / 2, leg = length / 4;
   return prism("arch",
-               {{-x, 0}, {leg - x, 0}, {leg - x, height / 2}, {x - leg, height / 2}, {x - leg, 0}, {x, 0}, {x, height}, {-x, height}},
+               {{-x, 0},
+                {leg - x, 0},
+                {leg - x, height / 2},
+                {x - leg, height / 2},
+                {x - leg, 0},
+                {x, 0},
+                {x, height},
+                {-x, height}},
                width);
 }
 
@@ -129,12 +136,16 @@ World::World(ScenePack made) : pack(std::move(made)) {
   id = packId(encodePack(pack));
 }
 
-Simulation World::simulate(const NativeOptions& options) const { return Simulation(base, id, makeNativeBackend(options)); }
+Simulation World::simulate(const NativeOptions& options) const {
+  return Simulation(base, id, makeNativeBackend(options));
+}
 
 RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   std::mt19937 engine(seed);
   const auto pick = [&engine](int low, int high) { return low + int(engine() % std::uint32_t(high - low + 1)); };
-  const auto oneOf = [&](std::initializer_list<int> values) { return *(values.begin() + pick(0, int(values.size()) - 1)); };
+  const auto oneOf = [&](std::initializer_list<int> values) {
+    return *(values.begin() + pick(0, int(values.size()) - 1));
+  };
   const int width = oneOf({1, 5, 23, 64, 65, 77, 91, 130}), height = oneOf({1, 7, 31, 63, 66, 89, 131});
   const int relief = oneOf({0, 300, 4000, 30000});
   RandomWorld world;
@@ -147,14 +158,16 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   pack.sweeps_per_tick = oneOf({0, 1, 3, 10});
   const int body_count = pick(1, 3);
   for (int i = 0; i < body_count; ++i) {
-    const int size = pick(1, 14) * pack.cell_q / 2;
-    const Mesh meshes[] = {boxMesh(size, size / 2 + 1, size), wedgeMesh(size, size * 2, size / 2 + 1), tetrahedronMesh(size),
-                           archMesh(size * 2, size, size), bladeMesh(size * 2, size)};
-    addBody(pack, meshes[pick(0, 4)], pick(-3, width + 3) * pack.cell_q, pick(-3, height + 3) * pack.cell_q, pick(-200, 2500));
+    const int size = (pick(0, 5) == 0 ? pick(20, 90) : pick(1, 20)) * pack.cell_q / 2;
+    const Mesh meshes[] = {boxMesh(size, size / 2 + 1, size), wedgeMesh(size, size * 2, size / 2 + 1),
+                           tetrahedronMesh(size), archMesh(size * 2, size, size), bladeMesh(size * 2, size)};
+    addBody(pack, meshes[pick(0, 4)], pick(-3, width + 3) * pack.cell_q, pick(-3, height + 3) * pack.cell_q,
+            pick(-200, 2500));
   }
   std::vector<Pose> poses = initialState({}, BaseTerrain(pack)).poses;
   std::vector<int> speed;
-  for (int i = 0; i < body_count; ++i) speed.push_back(oneOf({0, 1, pack.cell_q / 3, pack.cell_q, pack.cell_q * 5 / 2}));
+  for (int i = 0; i < body_count; ++i)
+    speed.push_back(oneOf({0, 1, pack.cell_q / 3, pack.cell_q, pack.cell_q * 5 / 2}));
   for (int tick = 0; tick < tick_count; ++tick) {
     for (int i = 0; i < body_count; ++i) {
       Pose& pose = poses[std::size_t(i)];
@@ -168,9 +181,9 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
     world.ticks.push_back(poses);
   }
   std::ostringstream text;
-  text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil " << pack.soil_depth_q
-       << ", thresholds " << pack.slope_threshold_q << " / " << pack.diagonal_threshold_q << " / " << pack.obstacle_threshold_q
-       << ", " << pack.sweeps_per_tick << " sweeps, bodies:";
+  text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "
+       << pack.soil_depth_q << ", thresholds " << pack.slope_threshold_q << " / " << pack.diagonal_threshold_q << " / "
+       << pack.obstacle_threshold_q << ", " << pack.sweeps_per_tick << " sweeps, bodies:";
   for (const Body& body : pack.bodies) text << ' ' << body.name;
   world.description = text.str();
   return world;
@@ -187,7 +200,8 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
       const int x = at.x * rules::kTileSize + i % rules::kTileSize, y = at.y * rules::kTileSize + i / rules::kTileSize;
       const std::int32_t expected = oracle.world().height[oracle.world().at(x, y)];
       if (tile->height()[std::size_t(i)] != expected)
-        return AssertionFailure() << "cell (" << x << ", " << y << ") is " << tile->height()[std::size_t(i)] << ", not " << expected;
+        return AssertionFailure() << "cell (" << x << ", " << y << ") is " << tile->height()[std::size_t(i)] << ", not "
+                                  << expected;
     }
     if (tile->wake_mask != oracle.wakeMask(at))
       return AssertionFailure() << "tile (" << at.x << ", " << at.y << ") has wake mask " << tile->wake_mask << ", not "
@@ -204,14 +218,16 @@ std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles) {
   std::int64_t steepest = 0;
   for (const Tile* tile : tiles.sorted())
     for (int i = 0; i < rules::kTileCells; ++i) {
-      const int x = tile->at.x * rules::kTileSize + i % rules::kTileSize, y = tile->at.y * rules::kTileSize + i / rules::kTileSize;
+      const int x = tile->at.x * rules::kTileSize + i % rules::kTileSize,
+                y = tile->at.y * rules::kTileSize + i / rules::kTileSize;
       if (x >= pack.width_cells || y >= pack.height_cells) continue;
       for (const auto& [dx, dy] : std::initializer_list<std::array<int, 2>>{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) {
         const int other_x = x + dx, other_y = y + dy;
         if (other_x < 0 || other_x >= pack.width_cells || other_y >= pack.height_cells) continue;
         const Tile* other = tiles.find({other_x / rules::kTileSize, other_y / rules::kTileSize});
         if (other == nullptr) continue;
-        const std::int64_t difference = std::int64_t(tile->height()[std::size_t(i)]) -
+        const std::int64_t difference =
+            std::int64_t(tile->height()[std::size_t(i)]) -
             other->height()[std::size_t(other_y % rules::kTileSize * rules::kTileSize + other_x % rules::kTileSize)];
         const int threshold = dx != 0 && dy != 0 ? pack.diagonal_threshold_q : pack.slope_threshold_q;
         steepest = std::max(steepest, std::abs(difference) - threshold);

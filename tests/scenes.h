@@ -11,7 +11,8 @@
 
 namespace spoor::test {
 
-/// Level ground: `width` x `height` cells of 1000 units, the surface at height 0, soil so deep that bedrock is far away.
+/// Level ground: `width` x `height` cells of 1000 units, the surface at height 0, soil so deep that bedrock is far
+/// away.
 ScenePack flatPack(int width, int height);
 
 /// Ground with the given heights, row by row from the south; soil of `soil_depth` under them.
@@ -22,10 +23,10 @@ ScenePack noisePack(int width, int height, std::uint64_t seed, int lowest, int h
 
 // Meshes, 0.1 mm, their lowest point at z = 0 and their origin in the middle.
 Mesh boxMesh(int length, int width, int height);
-Mesh wedgeMesh(int length, int width, int height);       // its edge points down, across its direction
-Mesh tetrahedronMesh(int size);                          // its tip points down
-Mesh archMesh(int length, int width, int height);        // two legs with a gap between them: not convex
-Mesh bladeMesh(int length, int height);                  // a vertical sheet without any thickness
+Mesh wedgeMesh(int length, int width, int height);  // its edge points down, across its direction
+Mesh tetrahedronMesh(int size);                     // its tip points down
+Mesh archMesh(int length, int width, int height);   // two legs with a gap between them: not convex
+Mesh bladeMesh(int length, int height);             // a vertical sheet without any thickness
 
 /// Adds a body whose path begins, and stays, at a point (0.1 mm). Returns its index.
 int addBody(ScenePack& pack, Mesh mesh, int x_q, int y_q, int sinkage_q);

@@ -28,8 +28,8 @@ class Session : public ::testing::Test {
  protected:
   static constexpr int kTicks = 12;
   World world_{drivePack()};
-  std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) /
-                                ("spoor_session_" + std::to_string(getpid()) + ".sprs");
+  std::filesystem::path path_ =
+      std::filesystem::path(::testing::TempDir()) / ("spoor_session_" + std::to_string(getpid()) + ".sprs");
 
   ~Session() override { std::filesystem::remove(path_); }
 
@@ -153,7 +153,8 @@ TEST_F(Session, ADamagedByteIsLocated) {
     if (reading.error.empty()) {
       ASSERT_TRUE(reading.truncated && at < starts[std::size_t(record)] + 4) << "byte " << at;
     } else {
-      ASSERT_NE(reading.error.find("byte " + std::to_string(starts[std::size_t(record)]) + ":"), std::string::npos) << reading.error;
+      ASSERT_NE(reading.error.find("byte " + std::to_string(starts[std::size_t(record)]) + ":"), std::string::npos)
+          << reading.error;
     }
   }
 }
@@ -167,7 +168,8 @@ TEST_F(Session, AMissingOrRepeatedTickIsReported) {
   write(missing);
   EXPECT_NE(readAll().error.find("tick 4 follows tick 2"), std::string::npos) << readAll().error;
   Bytes repeated = bytes;
-  repeated.insert(repeated.begin() + std::ptrdiff_t(starts[4]), bytes.begin() + std::ptrdiff_t(starts[3]), bytes.begin() + std::ptrdiff_t(starts[4]));
+  repeated.insert(repeated.begin() + std::ptrdiff_t(starts[4]), bytes.begin() + std::ptrdiff_t(starts[3]),
+                  bytes.begin() + std::ptrdiff_t(starts[4]));
   write(repeated);
   EXPECT_NE(readAll().error.find("tick 3 follows tick 3"), std::string::npos) << readAll().error;
 }

@@ -54,7 +54,8 @@ TEST(BaseTerrain, SamplesUnderCellCentresAreHit) {
                                       21, 22, 23,  24, 25,      //
                                       31, 32, 33,  34, 35},
                                0));
-  for (int i = 0; i < 35; ++i) EXPECT_EQ(world.base.height(i % 7, i / 7), world.pack.samples.height_q[std::size_t(i)]) << i;
+  for (int i = 0; i < 35; ++i)
+    EXPECT_EQ(world.base.height(i % 7, i / 7), world.pack.samples.height_q[std::size_t(i)]) << i;
 }
 
 /// 12 x 10 samples, 8.25 cells apart: sample (i, j) lies under no cell's centre in general.
@@ -62,7 +63,8 @@ ScenePack coarsePack(std::vector<std::int32_t> samples) {
   ScenePack pack = flatPack(99, 82);
   pack.soil_depth_q = 0;
   pack.base_kind = BaseKind::samples;
-  pack.samples = {12, 10, std::int64_t(double(1ll << 32) / 8.25), std::int64_t(double(1ll << 32) / 8.25), std::move(samples)};
+  pack.samples = {12, 10, std::int64_t(double(1ll << 32) / 8.25), std::int64_t(double(1ll << 32) / 8.25),
+                  std::move(samples)};
   return pack;
 }
 
@@ -138,7 +140,8 @@ TEST(TileStore, ATileBecomesLiveAsTheBaseIs) {
 TEST(TileStore, ListsLiveTilesByRowThenColumnAndKnowsWhichAreAwake) {
   const World world(flatPack(300, 300));
   TileStore store;
-  for (const TileCoordinate at : {TileCoordinate{3, 0}, {0, 2}, {1, 0}, {4, 1}}) store.insert(makeTile(at, world.base, 1));
+  for (const TileCoordinate at : {TileCoordinate{3, 0}, {0, 2}, {1, 0}, {4, 1}})
+    store.insert(makeTile(at, world.base, 1));
   std::vector<TileCoordinate> order;
   for (const Tile* tile : store.sorted()) order.push_back(tile->at);
   EXPECT_EQ(order, (std::vector<TileCoordinate>{{1, 0}, {3, 0}, {4, 1}, {0, 2}}));
@@ -198,7 +201,8 @@ TEST(Script, CornersAreTurnedEvenly) {
   Turn before = script.poses(0)[0].yaw;
   for (int tick = 1; tick < 800; ++tick) {
     const Turn now = script.poses(tick)[0].yaw;
-    ASSERT_LE(std::abs(int(std::int16_t(Turn(now - before)))), 16384 / 100 + 1) << tick;  // a quarter over 2 * 5000 units
+    ASSERT_LE(std::abs(int(std::int16_t(Turn(now - before)))), 16384 / 100 + 1)
+        << tick;  // a quarter over 2 * 5000 units
     before = now;
   }
   EXPECT_NEAR(script.poses(400)[0].yaw, 8192, 1);

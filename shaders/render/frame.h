@@ -62,7 +62,7 @@ struct Frame {
   vec4 ray_forward;      // w: depth * away [m]; orthographic: away of depth 0 [m]
   vec4 sun;              // towards the sun; w: tangent of its elevation
   vec4 scale;            // cell [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
-  vec4 look;             // strength of the fine detail, 0 .. 1; side of the shadow map's texel [m]; samples a pixel; unused
+  vec4 look;             // strength of the fine detail, 0 .. 1; the shadow map's texel [m]; samples a pixel; unused
   ivec4 origin;          // cell x, y; height, 0.1 mm
   ivec4 world;           // cells x, y; kGround*; kShade*
   LevelWindow levels[kLevelCount];

@@ -1,5 +1,6 @@
 // Picture, fragment stage: puts bodies, ground and sky together and shades the last two, once a pixel where
-// samples lie close together. In: bodies' colours (alpha 1) and depths of all samples. Out: colour; alpha: share that is no sky.
+// samples lie close together. In: bodies' colours (alpha 1) and depths of all samples.
+// Out: colour; alpha: share that is no sky.
 #version 450 core
 #include "ground.glsl"
 

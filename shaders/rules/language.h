@@ -51,32 +51,32 @@ RULE int maxInt(int a, int b) { return a > b ? a : b; }
 struct wide { uint low; uint high; };
 
 wide wideFrom(int a) { return wide(uint(a), a < 0 ? 0xffffffffu : 0u); }
+// By halves: umulExtended and imulExtended lose the high word in Mesa 22.3 where both factors are constants.
+wide wideMulUnsigned(uint a, uint b) {
+  uint low = (a & 0xffffu) * (b & 0xffffu);
+  uint middle = (a >> 16) * (b & 0xffffu) + (low >> 16);
+  uint middle_b = (a & 0xffffu) * (b >> 16) + (middle & 0xffffu);
+  return wide((middle_b << 16) | (low & 0xffffu), (a >> 16) * (b >> 16) + (middle >> 16) + (middle_b >> 16));
+}
 wide wideMul(int a, int b) {
-  int high;
-  int low;
-  imulExtended(a, b, high, low);
-  return wide(uint(low), uint(high));
+  wide product = wideMulUnsigned(uint(a), uint(b));
+  if (a < 0) product.high -= uint(b);
+  if (b < 0) product.high -= uint(a);
+  return product;
 }
 wide wideAdd(wide a, wide b) {
-  uint carry;
-  uint low = uaddCarry(a.low, b.low, carry);
-  return wide(low, a.high + b.high + carry);
+  uint low = a.low + b.low;
+  return wide(low, a.high + b.high + (low < a.low ? 1u : 0u));
 }
-wide wideSub(wide a, wide b) {
-  uint borrow;
-  uint low = usubBorrow(a.low, b.low, borrow);
-  return wide(low, a.high - b.high - borrow);
-}
+wide wideSub(wide a, wide b) { return wide(a.low - b.low, a.high - b.high - (a.low < b.low ? 1u : 0u)); }
 bool wideNegative(wide a) { return (a.high & 0x80000000u) != 0u; }
 bool wideZero(wide a) { return (a.low | a.high) == 0u; }
 int wideLow(wide a) { return int(a.low); }
 wide wideTimes(wide a, int b) {
-  uint high;
-  uint low;
-  umulExtended(a.low, uint(b), high, low);
-  high += a.high * uint(b);
-  if (b < 0) high -= a.low;
-  return wide(low, high);
+  wide product = wideMulUnsigned(a.low, uint(b));
+  product.high += a.high * uint(b);
+  if (b < 0) product.high -= a.low;
+  return product;
 }
 wide wideFloorDiv(wide a, wide b) {
   bool negative = wideNegative(a);

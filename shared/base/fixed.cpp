@@ -6,17 +6,25 @@
 namespace spoor {
 namespace {
 
-constexpr std::int64_t kOneQ30 = std::int64_t(1) << 30;
+constexpr std::int64_t kOneQ31 = std::int64_t(1) << 31;
 
-/// Sine of a quarter turn's share, 0..16384 = 0..90 degrees, by Taylor's series up to x^11.
+/// 1 - s/d0 (1 - s/d1 (1 - s/d2 ...)): the nested form of Taylor's series for sine and cosine. Q31.
+std::int64_t nested(std::int64_t square, std::initializer_list<int> divisors_from_last) {
+  std::int64_t series = kOneQ31;
+  for (const int divisor : divisors_from_last) series = kOneQ31 - mulShift(square, series, 31) / divisor;
+  return series;
+}
+
+/// Sine of a part of a quarter turn, 0..16384 = 0..90 degrees, Q30: by the series of sine or cosine, whichever is asked
+/// for at most an eighth of a turn.
 std::int32_t quarterSine(std::int32_t part) {
-  constexpr std::int64_t kHalfPiQ30 = 1686629713;
-  const std::int64_t x = (kHalfPiQ30 * part) >> 14;
-  const std::int64_t square = (x * x) >> 30;
-  std::int64_t series = kOneQ30;
-  for (const int divisor : {110, 72, 42, 20, 6}) series = kOneQ30 - ((square * series) >> 30) / divisor;
-  const std::int64_t sine = mulShift(x, series, 30);
-  return std::int32_t(sine < kOneQ30 ? sine : kOneQ30);
+  constexpr std::int64_t kHalfPiQ31 = 3373259426;
+  const bool by_cosine = part > 8192;
+  const std::int64_t x = (kHalfPiQ31 * (by_cosine ? 16384 - part : part) + (1 << 13)) >> 14;
+  const std::int64_t square = mulShift(x, x, 31);
+  const std::int64_t sine =
+      by_cosine ? nested(square, {132, 90, 56, 30, 12, 2}) : mulShift(x, nested(square, {110, 72, 42, 20, 6}), 31);
+  return std::int32_t((sine + 1) >> 1);
 }
 
 }  // namespace
@@ -33,10 +41,14 @@ std::uint32_t isqrt(std::uint64_t value) {
 std::int32_t sineQ30(std::uint16_t turn) {
   const std::int32_t part = turn & 16383;
   switch (turn >> 14) {
-    case 0: return quarterSine(part);
-    case 1: return quarterSine(16384 - part);
-    case 2: return -quarterSine(part);
-    default: return -quarterSine(16384 - part);
+    case 0:
+      return quarterSine(part);
+    case 1:
+      return quarterSine(16384 - part);
+    case 2:
+      return -quarterSine(part);
+    default:
+      return -quarterSine(16384 - part);
   }
 }
 
@@ -44,8 +56,10 @@ std::int32_t cosineQ30(std::uint16_t turn) { return sineQ30(std::uint16_t(turn +
 
 std::uint16_t turnOf(std::int64_t x, std::int64_t y) {
   // CORDIC, vectoring: atan(2^-i) as a share of a turn, Q32.
-  constexpr std::uint32_t kAtanQ32[] = {536870912, 316933406, 167458907, 85004756, 42667331, 21354465, 10679838, 5340245,
-                                        2670163,   1335087,   667544,    333772,   166886,   83443,    41722,    20861};
+  constexpr std::uint32_t kAtanQ32[] = {536870912, 316933406, 167458907, 85004756, 42667331, 21354465,
+                                        10679838,  5340245,   2670163,   1335087,  667544,   333772,
+                                        166886,    83443,     41722,     20861,    10430,    5215,
+                                        2608,      1304,      652,       326,      163,      81};
   if (x == 0 && y == 0) return 0;
   std::uint32_t angle = 0;
   if (x < 0) {
@@ -57,7 +71,7 @@ std::uint16_t turnOf(std::int64_t x, std::int64_t y) {
   const int shift = std::countl_zero(reach) - 4;  // use the word's precision, keep room for the rotation's growth
   x = shift >= 0 ? x << shift : x >> -shift;
   y = shift >= 0 ? y << shift : y >> -shift;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 24; ++i) {
     const std::int64_t x_step = x >> i;
     const std::int64_t y_step = y >> i;
     if (y > 0) {

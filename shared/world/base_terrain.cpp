@@ -39,9 +39,10 @@ std::int32_t sampleHeight(const SampleBase& samples, const Cubic& along_x, const
       const std::int64_t column = std::clamp<std::int64_t>(along_x.first + i - 1, 0, samples.column_count - 1);
       row_sum += heights[column] * along_x.weight[i];
     }
-    sum += (row_sum >> (kWeightBits - kRowBits)) * (along_y.weight[j] >> kRowBits);
+    sum += (row_sum >> (kWeightBits - kRowBits)) * along_y.weight[j];
   }
-  const std::int64_t height = (sum + (1 << (kWeightBits - 1))) >> kWeightBits;
+  constexpr int shift = kWeightBits + kRowBits;
+  const std::int64_t height = (sum + (std::int64_t(1) << (shift - 1))) >> shift;
   constexpr std::int64_t limit = 3 << 28;  // overshoot of a cubic stays within the height limit
   return std::int32_t(std::clamp<std::int64_t>(height, -limit, limit));
 }
