@@ -1,5 +1,6 @@
 // spoor-replay: what a session file holds, and whether this machine gets the same.
 #include <cstdio>
+#include <exception>
 
 #include "shared/base/json.h"
 #include "shared/base/options.h"
@@ -68,6 +69,7 @@ int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
                   " here, by " + std::to_string(tick.ledger.error()) + " in the record");
     if (tick.tick % 100 == 0) std::fprintf(stderr, "tick %d\n", tick.tick);
   }
+  if (simulation.state().tick == 0) return fail("the session holds no ticks");
   std::printf("verified %d ticks%s: every hash and ledger equal, last hash %s\n", simulation.state().tick,
               reader.truncated() ? " (the file ends within the next)" : "", hexText(stateHash(simulation.state())).c_str());
   return 0;
@@ -99,4 +101,10 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace spoor
 
-int main(int argc, char** argv) { return spoor::run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return spoor::run(argc, argv);
+  } catch (const std::exception& error) {
+    return spoor::fail(error.what());
+  }
+}

@@ -2,22 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numeric>
+
+#include "shared/base/statistics.h"
 
 namespace spoor {
 namespace {
 
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::ranges::sort(values);
-  return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
-}
-
 std::int64_t meanCells(const LoopFigures& figures) {
   if (figures.active_cells.empty()) return 0;
-  return std::accumulate(figures.active_cells.begin(), figures.active_cells.end(), std::int64_t(0)) /
-         std::int64_t(figures.active_cells.size());
+  return std::int64_t(std::accumulate(figures.active_cells.begin(), figures.active_cells.end(), 0.0) / double(figures.active_cells.size()));
 }
 
 double bytesPerTick(const ClientReport& client) {
@@ -54,12 +48,13 @@ std::vector<std::string> faultsOf(const SessionReport& report, int expected_clie
 std::string tableOf(const SessionReport& report) {
   const LoopFigures& figures = report.figures;
   const double busy_ms = std::accumulate(figures.tick_ms.begin(), figures.tick_ms.end(), 0.0);
+  const double kept_ticks = double(figures.tick_ms.size());
   std::string text;
   const auto row = [&](std::string_view name, const std::string& value) { text += fmt::format("{:<22} {}\n", name, value); };
   row("scene", fmt::format("{} (pack {})", report.scene, report.pack_id));
   row("backend", fmt::format("{}, renderer {}", report.backend, report.renderer));
   row("ticks", fmt::format("{} in {:.2f} s = {:.1f} ticks/s; {:.1f} ticks/s were possible; {} began late", report.ticks, figures.wall_s,
-                           report.ticks / figures.wall_s, busy_ms > 0 ? report.ticks / busy_ms * 1e3 : 0, figures.late_ticks));
+                           report.ticks / figures.wall_s, busy_ms > 0 ? kept_ticks / busy_ms * 1e3 : 0, figures.late_ticks));
   row("ms per tick", fmt::format("{:.3f} median, {:.3f} 99th percentile", percentile(figures.tick_ms, 0.5), percentile(figures.tick_ms, 0.99)));
   for (int stage = 0; stage < kStageCount; ++stage)
     if (percentile(figures.stage_ms[stage], 1) > 0)

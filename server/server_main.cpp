@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -18,7 +19,7 @@ struct Settings {
   SceneSource source;
   std::string backend = "auto", session, json;
   std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
-  double rate_hz = 60, wait_s = 60;
+  double rate_hz = -1, wait_s = 60;
 };
 
 void parse(int argc, char** argv, Settings& settings) {
@@ -28,7 +29,7 @@ void parse(int argc, char** argv, Settings& settings) {
   options.add("backend", "NAME", "auto or native", &settings.backend);
   options.add("threads", "N", "of the native backend; 0: one for each processor", &settings.threads, 0, 256);
   options.add("ticks", "N", "length of the session; 0: as the scene says", &settings.ticks, 0, 1 << 30);
-  options.add("rate", "HZ", "ticks per second; 0: as fast as they go", &settings.rate_hz, 0.0, 1000.0);
+  options.add("rate", "HZ", "ticks per second; 0: as fast as they go; -1: as the scene says", &settings.rate_hz, -1.0, 1000.0);
   options.add("session", "FILE", "record the session there", &settings.session);
   options.add("seed", "N", "instead of the scene's seed; -1: the scene's", &settings.seed, -1, INT64_MAX);
   options.add("wait-clients", "N", "begin when so many clients are in sync", &settings.wait_clients, 0, 1000);
@@ -55,7 +56,8 @@ T orThrow(Result<T> result) {
 LoadedScene loadSeeded(const Settings& settings) {
   LoadedScene scene = orThrow(loadScene(settings.source));
   if (settings.seed < 0) return scene;
-  scene.pack.seed = scene.pack.noise.seed = std::uint64_t(settings.seed);
+  scene.pack.seed = std::uint64_t(settings.seed);
+  if (scene.pack.base_kind == BaseKind::noise) scene.pack.noise.seed = scene.pack.seed;
   scene.encoded = encodePack(scene.pack);
   scene.id = packId(scene.encoded);
   return scene;
@@ -87,13 +89,14 @@ int run(int argc, char** argv) {
   if (!settings.session.empty()) writer = orThrow(SessionWriter::create(settings.session, scene.encoded));
   HostOptions host_options;
   host_options.port = std::uint16_t(settings.port);
+  host_options.max_clients = std::max(host_options.max_clients, int(settings.wait_clients) + 4);
   const auto host = orThrow(SessionHost::open(host_options, scene.pack, scene.encoded));
   spdlog::info("port {}", host->port());
 
   awaitClients(*host, settings);
   LoopOptions loop;
   loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
-  loop.rate_hz = settings.rate_hz;
+  loop.rate_hz = settings.rate_hz < 0 ? scene.pack.ticks_per_second : settings.rate_hz;
   SessionReport report;
   report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), [](const std::string& line) { spdlog::info(line); });
   report.clients = host->finish(30);

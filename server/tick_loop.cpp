@@ -39,9 +39,16 @@ class Pace {
 };
 
 void note(LoopFigures& figures, const TickResult& result, const WorldState& state, double tick_ms) {
-  figures.tick_ms.push_back(tick_ms);
-  for (int stage = 0; stage < kStageCount; ++stage) figures.stage_ms[stage].push_back(result.effect.stage_ms[stage]);
-  figures.active_cells.push_back(result.effect.active_cells);
+  const auto keep = [tick = std::size_t(state.tick)](std::vector<double>& values, double value) {
+    if (values.size() < LoopFigures::kTicksKept) {
+      values.push_back(value);
+    } else {
+      values[tick % LoopFigures::kTicksKept] = value;
+    }
+  };
+  keep(figures.tick_ms, tick_ms);
+  for (int stage = 0; stage < kStageCount; ++stage) keep(figures.stage_ms[stage], result.effect.stage_ms[stage]);
+  keep(figures.active_cells, double(result.effect.active_cells));
   figures.too_fast_ticks += result.too_fast ? 1 : 0;
   figures.unbalanced_ticks += state.ledger.error() != 0 ? 1 : 0;
 }

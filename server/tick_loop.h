@@ -12,14 +12,16 @@ namespace spoor {
 
 struct LoopOptions {
   std::int32_t ticks = 0;
-  double rate_hz = 60;  // 0: as fast as it goes
+  double rate_hz = 60;  // ticks per second; 0: as fast as they go
 };
 
-/// Figures of a session, tick by tick.
+/// Figures of a session: of its last kTicksKept ticks, so that a long session does not grow, in no particular order.
 struct LoopFigures {
-  std::vector<double> tick_ms;                                  // commands to delta, [ticks]
-  std::array<std::vector<double>, kStageCount> stage_ms;        // [stages][ticks]
-  std::vector<std::int64_t> active_cells;                       // [ticks]
+  static constexpr std::size_t kTicksKept = 1 << 16;
+
+  std::vector<double> tick_ms;                                  // commands to delta
+  std::array<std::vector<double>, kStageCount> stage_ms;
+  std::vector<double> active_cells;
   std::int32_t late_ticks = 0;                                  // that began after their time
   std::int32_t too_fast_ticks = 0;
   std::int32_t unbalanced_ticks = 0;                            // whose ledger error was not 0

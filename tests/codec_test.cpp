@@ -148,6 +148,7 @@ TEST_F(Codec, AWrongChangeIsRefusedAndLeavesTheStateUntouched) {
   follow(6);
   const TickResult next = tick();
   ASSERT_GE(next.effect.changes.size(), 2u);
+  ASSERT_FALSE(next.effect.changes.back().difference.empty());
   const auto before = bytesOf(mirror_, world_.base);
   const auto isRefused = [&](auto change) {
     auto changes = next.effect.changes;

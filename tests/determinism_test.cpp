@@ -123,6 +123,22 @@ TEST_F(Determinism, AMirrorThatSimulatesFollowsAServer) {
   }
 }
 
+TEST(DeterminismOfLargeBodies, ADomainSharedOutBetweenThreadsHasTheSameHashes) {
+  // Two wide bodies side by side: every stage hands parts of their domains to different threads.
+  ScenePack pack = noisePack(500, 400, 6, -4000, 4000, 30000);
+  addBody(pack, wedgeMesh(200000, 300000, 20000), 120000, 200000, 3000);
+  addBody(pack, tetrahedronMesh(120000), 380000, 200000, 20000);
+  const World world(std::move(pack));
+  std::vector<std::vector<Pose>> ticks;
+  std::vector<Pose> poses = initialState(world.id, world.base).poses;
+  for (int tick = 0; tick < 4; ++tick) {
+    poses = {moved(poses[0], 900, 0, -100), moved(poses[1], -800, 300, -300, 20)};
+    ticks.push_back(poses);
+  }
+  const Hashes expected = hashesOf(world, ticks, {.thread_count = 1});
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(hashesOf(world, ticks, {.thread_count = threads}), expected) << threads;
+}
+
 TEST(DeterminismOfManyBodies, BodiesThatShareATileButNoDomainDoNotRace) {
   // Long boxes side by side along y, every other one high above the ground: what the domains note about the rows of
   // the tile that they share must not get lost.

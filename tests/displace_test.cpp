@@ -24,8 +24,7 @@ TEST(Displace, FiveByFiveCellsUnderASmallBody) {
                     kNone, kNone, kNone, kNone, kNone,  //
                     kNone, kNone, kNone, kNone, kNone});
   rig.displace();
-  // The middle column is as near to its upper as to its lower neighbour: the lower row wins; the cell above the middle
-  // goes down, the middle itself up to row 3.
+  // Row 1 goes down to row 0; of row 2 the sides go to the side, and the middle up to row 3.
   EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1100, 1200, 1100, 1000,  //
                                                                    1000, 900,  800,  900,  1000,  //
                                                                    1100, 900,  700,  900,  1100,  //
@@ -108,6 +107,26 @@ TEST(Displace, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
   for (std::uint32_t seed = 0; seed < 12; ++seed)
     for (const auto& [columns, rows] : {std::pair{77, 41}, {1, 200}, {65, 1}, {9, 66}})
       checkRandomWorld(columns, rows, seed);
+}
+
+TEST(Displace, RowsThatShareTargetsDoNotRace) {
+  // Many rows, more than one task's share, whose cells go by turns to the same two targets.
+  constexpr int kColumns = 256, kRows = 512;
+  const World world(groundPack(kColumns, kRows, std::vector<std::int32_t>(kColumns * kRows, 1000), 5000));
+  StageRig rig(world, 4);
+  for (int round = 0; round < 10; ++round) {
+    std::vector<std::int32_t> underside(kColumns * kRows, 995);
+    underside[0] = underside[1] = kNone;
+    rig.set(rig.area.height, std::vector<std::int32_t>(kColumns * kRows, 1000));
+    rig.setUnderside(underside);
+    runPenetration(rig.context, rig.domain);
+    rig.domain.target.resize(rig.domain.overlap.size());
+    for (std::size_t i = 0; i < rig.domain.target.size(); ++i) rig.domain.target[i] = int(i % 2);
+    runDisplace(rig.context, rig.domain, 0);
+    ASSERT_EQ(rig.area.height[rig.area.offsetAt(0, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
+    ASSERT_EQ(rig.area.height[rig.area.offsetAt(1, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
+    ASSERT_EQ(rig.area.height[rig.area.offsetAt(255, 511)], 995) << "round " << round;
+  }
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST_P(Golden, NeitherThreadsNorKernelsNorSkippingShow) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(sceneNames()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(sceneNames()), [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace spoor

@@ -115,6 +115,14 @@ TEST(Nearest, EqualsASearchOverAllCellsForEveryDensity) {
       }
 }
 
+TEST(Nearest, EqualsASearchOverAllCellsWhenSharedOutBetweenThreads) {
+  std::mt19937 engine(33);
+  std::vector<std::int32_t> overlap;
+  for (int i = 0; i < 401 * 299; ++i)
+    overlap.push_back(engine() % 400 == 0 ? kFree : engine() % 5 == 0 ? kWall : kHere);
+  checkAgainstAllCells(Search(401, 299, overlap, 4), "401 x 299");
+}
+
 TEST(Nearest, EqualsASearchOverAllCellsAroundRoundAndSquareShapes) {
   for (const int radius : {5, 20, 31})
     for (const bool round : {true, false}) {

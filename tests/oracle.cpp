@@ -42,17 +42,22 @@ Oracle::Box Oracle::searchBox(int body_index, const Pose& pose) const {
           std::min(y1 + 2, world_.inside_rows)};
 }
 
+/// Sub-steps of at most a cell each: the body's shift, and what its farthest vertex moves by turning (spin left out).
 int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const {
   const ScenePack& pack = base_->pack();
-  Pose start = from, end = to;
-  start.spin = end.spin = 0;
-  const Rotation before = rotationOf(start), after = rotationOf(end);
-  std::int64_t farthest = 0;
-  for (const auto& vertex : pack.meshes[std::size_t(pack.bodies[std::size_t(body_index)].mesh_index)].vertices) {
-    const auto a = rotate(before, vertex), b = rotate(after, vertex);
-    farthest = std::max(farthest, std::abs(std::int64_t(end.x_q) + b[0] - start.x_q - a[0]));
-    farthest = std::max(farthest, std::abs(std::int64_t(end.y_q) + b[1] - start.y_q - a[1]));
+  std::int64_t farthest_square = 0;
+  for (const auto& [x, y, z] : pack.meshes[std::size_t(pack.bodies[std::size_t(body_index)].mesh_index)].vertices)
+    farthest_square = std::max(farthest_square, std::int64_t(x) * x + std::int64_t(y) * y + std::int64_t(z) * z);
+  const std::int64_t reach = isqrt(std::uint64_t(farthest_square)) + 1;
+  std::int64_t turned = 0;
+  for (const Turn Pose::*turn : {&Pose::yaw, &Pose::pitch, &Pose::roll}) {
+    const int round = Turn(to.*turn - from.*turn);
+    turned += std::min(round, 65536 - round);
   }
+  constexpr std::int64_t kRadiansPerTurnQ32 = 411775;  // 2 pi / 65536, as all machines must round it
+  const std::int64_t shift =
+      std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
+  const std::int64_t farthest = shift + ((reach * turned * kRadiansPerTurnQ32) >> 32);
   return int(std::clamp<std::int64_t>((farthest + pack.cell_q - 1) / pack.cell_q, 1, kMostSubSteps));
 }
 

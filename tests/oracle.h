@@ -32,7 +32,7 @@ struct OracleBody {
 OracleBody placeForOracle(const ScenePack& pack, int body_index, const Pose& pose);
 
 /// Is the centre of cell (x, y), counted from the body's origin, inside a triangle? By edge functions; a centre on an
-/// edge belongs to the triangle whose inside lies on the edge's right, or above it where it is level (top-left rule).
+/// edge belongs to the triangle to the east of it, or, where the edge is level, to the south (top-left rule).
 bool coversCentre(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, int x, int y);
 
 /// floor of the plane's height over that centre, exactly. The triangle must have an area.

@@ -18,12 +18,18 @@ ScenePack fullPack() {
   pack.ticks_per_second = 30;
   pack.default_ticks = 99;
   pack.obstacle_threshold_q = 5;
-  pack.noise = {17, 1 << 20, 3, -5, 6};
   addBody(pack, archMesh(4000, 2000, 1000), 3000, 4000, 55);
   addBody(pack, tetrahedronMesh(900), 2000, 1000, -5);
   pack.paths[0] = {{{1, 2}, {300, 400}}, 17, 3, 1};
   pack.bodies[1] = {"wheel", 1, 0, {1, -2, 3}, 4, 5, 6, 7, 8, 1};
   return pack;
+}
+
+/// The same pack over noise.
+void makeNoise(ScenePack& pack) {
+  pack.base_kind = BaseKind::noise;
+  pack.samples = {};
+  pack.noise = {17, 1 << 20, 3, -5, 6};
 }
 
 TEST(Pack, DecodesToWhatWasEncoded) {
@@ -105,8 +111,10 @@ TEST(Pack, ValidateNamesTheFieldThatIsOutOfRange) {
       {"column_count", [](ScenePack& p) { p.samples.column_count = 0; }},
       {"height_q", [](ScenePack& p) { p.samples.height_q.pop_back(); }},
       {"sample_height", [](ScenePack& p) { p.samples.height_q[5] = 1 << 30; }},
-      {"octaves", [](ScenePack& p) { p.base_kind = BaseKind::noise, p.noise.octaves = 9; }},
-      {"highest_q", [](ScenePack& p) { p.base_kind = BaseKind::noise, p.noise.highest_q = -6; }},
+      {"octaves", [](ScenePack& p) { makeNoise(p), p.noise.octaves = 9; }},
+      {"highest_q", [](ScenePack& p) { makeNoise(p), p.noise.highest_q = -6; }},
+      {"noise given", [](ScenePack& p) { p.noise.seed = 1; }},
+      {"samples given", [](ScenePack& p) { makeNoise(p), p.samples.column_count = 1; }},
       {"no triangles", [](ScenePack& p) { p.meshes[0].triangles.clear(); }},
       {"vertex it does not have", [](ScenePack& p) { p.meshes[0].triangles[2][1] = 16; }},
       {"vertex it does not have", [](ScenePack& p) { p.meshes[0].edges[2][1] = 16; }},

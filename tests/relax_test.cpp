@@ -119,7 +119,9 @@ TEST(Relax, FlowCrossesABorderOnlyBetweenActiveTiles) {
     for (const TileCoordinate tile : plan.active)
       for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) dense.active[dense.at(tile.x * 64 + x, tile.y * 64 + y)] = 1;
-    runRelax({world.pack, kernels(), pool, area}, 0, 7, true);
+    const NativeContext context{world.pack, kernels(), pool, area};
+    runDepth(context, {});
+    runRelax(context, 0, 7, true);
     oracleRelax(dense, world.pack, 7);
     for (const TileCoordinate tile : plan.active)
       for (int i = 0; i < rules::kTileCells; ++i) {

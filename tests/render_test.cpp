@@ -62,6 +62,7 @@ ScenePack planePack() {
   ScenePack pack = noisePack();
   pack.bodies.clear();
   pack.base_kind = BaseKind::samples;
+  pack.noise = {};
   pack.soil_depth_q = 0;
   const int side = 24;
   pack.samples.column_count = side;

@@ -56,7 +56,6 @@ ScenePack groundPack(int width, int height, const std::vector<std::int32_t>& hei
   ScenePack pack = emptyPack(width, height);
   pack.soil_depth_q = soil_depth;
   pack.base_kind = BaseKind::samples;
-  pack.noise = {1, 1, 1, 0, 0};
   pack.samples = {width, height, std::int64_t(1) << 32, std::int64_t(1) << 32, heights};
   for (std::int32_t& sample : pack.samples.height_q) sample -= soil_depth;
   return pack;

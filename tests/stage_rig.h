@@ -17,6 +17,7 @@ struct StageRig {
     plan.tick = 1;
     area.gather(plan, world.base, state, pool);
     area.clearUnderside(world.pack, pool);
+    runDepth(context, {});
     domain.reset({0, 0, world.pack.width_cells, world.pack.height_cells}, area);
   }
   StageRig(const StageRig&) = delete;

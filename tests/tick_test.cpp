@@ -59,15 +59,15 @@ void checkTicks(const World& world, const std::vector<std::vector<Pose>>& ticks)
 }
 
 TEST(Tick, AJoinedDomainReachesTilesThatNoBodyDoes) {
-  // Two bars that form an L: the box of both covers the tile in its open corner.
+  // Two bars that form an L over three tiles: the box of both reaches into the fourth, in its open corner.
   ScenePack pack = flatPack(200, 200);
-  addBody(pack, boxMesh(40000, 4000, 3000), 30000, 10000, 500);
-  addBody(pack, boxMesh(4000, 40000, 3000), 50000, 30000, 500);
-  // A third stands in that corner, and is drawn in by the domain.
-  addBody(pack, boxMesh(3000, 3000, 3000), 20000, 80000, 500);
+  addBody(pack, boxMesh(80000, 4000, 3000), 60000, 10000, 500);
+  addBody(pack, boxMesh(4000, 80000, 3000), 100000, 50000, 500);
+  // A third stands in that tile, outside the box, and is drawn in by the domain.
+  addBody(pack, boxMesh(3000, 3000, 3000), 40000, 110000, 500);
   const World world(std::move(pack));
   std::vector<Pose> poses = initialState(world.id, world.base).poses;
-  std::vector<std::vector<Pose>> ticks = {poses, poses, poses};
+  std::vector<std::vector<Pose>> ticks(12, poses);
   for (int tick = 0; tick < 8; ++tick) {
     poses[0] = moved(poses[0], 0, 300);
     poses[1] = moved(poses[1], 200, 700);

@@ -63,6 +63,7 @@ ScenePack coarsePack(std::vector<std::int32_t> samples) {
   ScenePack pack = flatPack(99, 82);
   pack.soil_depth_q = 0;
   pack.base_kind = BaseKind::samples;
+  pack.noise = {};
   pack.samples = {12, 10, std::int64_t(double(1ll << 32) / 8.25), std::int64_t(double(1ll << 32) / 8.25),
                   std::move(samples)};
   return pack;

@@ -22,8 +22,8 @@ RULE_CONST kMatchAntidiagonal = 6;  // matchings 6, 7: (x, y) - (x-1, y+1), pari
 /// Ranges: heights within +-kHeightLimit; the result's magnitude is at most 2^30.
 RULE int pairFlow(int height_a, int height_b, int threshold, int soil_a, int soil_b, int room_a, int room_b) {
   int difference = height_a - height_b;
-  int forward = maxInt(difference - threshold, 0);
-  int backward = maxInt(-difference - threshold, 0);
+  int forward = maxInt(difference, threshold) - threshold;
+  int backward = maxInt(-difference, threshold) - threshold;
   int from_a = minInt((forward >> 1) + (forward & 1), minInt(soil_a, room_b));
   int from_b = minInt((backward >> 1) + (backward & 1), minInt(soil_b, room_a));
   return from_a - from_b;

@@ -41,9 +41,12 @@ RULE RasterTriangle rasterTriangle(RasterPoint a, RasterPoint b, RasterPoint c) 
   if (!wideZero(area)) {
     wide per_cell = wideTimes(t.slope_x, kSubcells);
     // A face so steep that this clamps has at most one cell centre per row, where the step is not used.
-    t.step = wideClamp(wideFloorDiv(per_cell, area), -kHeightLimit, kHeightLimit);
-    wide rest = wideSub(per_cell, wideTimes(area, t.step));
-    t.step_fraction = wideClamp(wideFloorDiv(wideTimes(rest, 65536), area), 0, 65535);
+    wide whole = wideFloorDiv(per_cell, area);
+    t.step = wideClamp(whole, -kHeightLimit, kHeightLimit);
+    if (wideZero(wideSub(whole, wideFrom(t.step)))) {
+      wide rest = wideSub(per_cell, wideTimes(area, t.step));
+      t.step_fraction = wideClamp(wideFloorDiv(wideTimes(rest, 65536), area), 0, 65535);
+    }
   }
   return t;
 }

@@ -31,7 +31,9 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
     return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) + " bodies"};
   for (std::size_t i = 0; i < count; ++i) state.poses.push_back(getPose(reader));
   for (std::size_t i = 0; i < count; ++i) state.previous_poses.push_back(getPose(reader));
-  auto changes = decodeTiles(reader.getBytes(reader.left()), base.pack());
+  for (const auto* poses : {&state.poses, &state.previous_poses})
+    if (Status status = validatePoses(base.pack(), *poses); !status) return Error{"snapshot: " + status.error()};
+  auto changes = decodeTiles(reader.getBytes(reader.left()), base.pack(), kSnapshotTilesLimit);
   if (!changes) return Error{"snapshot: " + changes.error()};
   for (const TileChange& change : *changes)
     if (change.base_version != kDormantVersion || change.new_version > state.tick)

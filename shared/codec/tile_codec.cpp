@@ -101,9 +101,10 @@ std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes) {
   return std::move(writer.bytes);
 }
 
-Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack) {
+Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack, std::size_t tile_limit) {
   ByteReader reader(bytes);
   const std::size_t count = reader.get<std::uint32_t>();
+  if (count > tile_limit) return Error{"tile changes: " + std::to_string(count) + " tiles, the limit is " + std::to_string(tile_limit)};
   if (count > reader.left() / kEntryBytes) return Error{"tile changes: truncated"};
   const TileCoordinate extent = tileExtent(pack);
   std::vector<Entry> entries(count);
@@ -216,10 +217,11 @@ Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const Ti
 Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& update) {
   const std::string tick_name = "tick " + std::to_string(update.tick) + ": ";
   if (update.tick != state.tick + 1) return Error{tick_name + "expected tick " + std::to_string(state.tick + 1)};
-  if (update.poses.size() != base.pack().bodies.size())
-    return Error{tick_name + std::to_string(update.poses.size()) + " poses for " + std::to_string(base.pack().bodies.size()) + " bodies"};
+  if (Status status = validatePoses(base.pack(), update.poses); !status) return Error{tick_name + status.error()};
   auto changes = decodeTiles(update.tiles, base.pack());
   if (!changes) return Error{tick_name + changes.error()};
+  for (const TileChange& change : *changes)
+    if (change.new_version != update.tick) return Error{tick_name + nameOf(change.at) + ": is of another tick"};
   if (Status status = applyTiles(state, base, *changes); !status) return Error{tick_name + status.error()};
   state.tick = update.tick;
   state.previous_poses = std::move(state.poses);

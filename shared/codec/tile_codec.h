@@ -9,6 +9,11 @@
 
 namespace spoor {
 
+// A few bytes of a change can make a whole tile live (48 KiB), so changes are bounded in number: those of a tick by what
+// a tick may simulate, those of a snapshot by what a client may hold.
+inline constexpr std::size_t kTickTilesLimit = 1 << 14;
+inline constexpr std::size_t kSnapshotTilesLimit = 1 << 17;
+
 /// Version of a tile that was dormant: it equals the base.
 inline constexpr std::int32_t kDormantVersion = -1;
 
@@ -31,7 +36,8 @@ TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t
 std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes);
 
 /// Safe on untrusted bytes. Checks structure and ranges; tiles must lie in the pack's world, in (y, x) order, once each.
-Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack);
+Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack,
+                                            std::size_t tile_limit = kTickTilesLimit);
 
 /// Applies changes to a state's tiles and keeps its sums. All is checked first (versions, height range, every tile's
 /// hash); on an error, which names the tile, the state is untouched.

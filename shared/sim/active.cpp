@@ -1,5 +1,6 @@
 // Stage active: the tiles and bodies of a tick, from nothing but state and input.
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "shared/base/fixed.h"
@@ -14,22 +15,15 @@ CellBox grown(const CellBox& box, const ScenePack& pack) {
           std::min(box.y1 + 1, pack.height_cells)};
 }
 
-/// How many sub-steps keep every part of a body within one cell of its place a sub-step before. Spin is left out: the
-/// rim of a rolling wheel rests where it touches the ground.
-int subStepsFor(const ScenePack& pack, int body_index, Pose from, Pose to) {
-  from.spin = to.spin = 0;
-  const Mesh& mesh = pack.meshes[std::size_t(pack.bodies[std::size_t(body_index)].mesh_index)];
-  const Rotation rotation_from = rotationOf(from), rotation_to = rotationOf(to);
-  std::int64_t farthest = 0;
-  for (const auto& vertex : mesh.vertices) {
-    const auto a = rotate(rotation_from, vertex), b = rotate(rotation_to, vertex);
-    for (int axis = 0; axis < 2; ++axis) {
-      const std::int64_t shift = axis == 0 ? std::int64_t(to.x_q) - from.x_q : std::int64_t(to.y_q) - from.y_q;
-      const std::int64_t moved = shift + b[axis] - a[axis];
-      farthest = std::max(farthest, moved < 0 ? -moved : moved);
-    }
-  }
-  return int(std::min<std::int64_t>(-floorDiv(-farthest, pack.cell_q), kSubStepLimit + 1));
+/// How many sub-steps keep every part of a body within one cell of its place a sub-step before: its own shift, and its
+/// reach times the angle it turns by. Spin is left out: the rim of a rolling wheel rests where it touches the ground.
+int subStepsFor(std::int32_t cell_q, std::int32_t reach_q, const Pose& from, const Pose& to) {
+  constexpr std::int64_t kRadiansPerTurnQ32 = 411775;  // 2 pi / 65536
+  const auto angle = [](Turn a, Turn b) { return std::abs(std::int64_t(std::int16_t(std::uint16_t(b - a)))); };
+  const std::int64_t turned = angle(from.yaw, to.yaw) + angle(from.pitch, to.pitch) + angle(from.roll, to.roll);
+  const std::int64_t shift = std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
+  const std::int64_t farthest = shift + ((reach_q * turned * kRadiansPerTurnQ32) >> 32);
+  return int(std::clamp<std::int64_t>(-floorDiv(-farthest, cell_q), 1, kSubStepLimit + 1));
 }
 
 void addTiles(const CellBox& box, std::set<TileCoordinate>& tiles) {
@@ -58,10 +52,10 @@ void addWoken(const ScenePack& pack, const WorldState& state, std::set<TileCoord
 }
 
 /// Joins boxes that touch until all are apart: between two domains lies at least the ring of one of them.
-std::vector<Domain> joinedDomains(const ScenePack& pack, const std::vector<PlacedBody>& bodies) {
+Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
   std::vector<Domain> domains;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Domain joined{grown(bodies[i].box, pack), {int(i)}};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    Domain joined{boxes[i], {int(i)}};
     if (joined.box.empty()) continue;
     for (auto other = domains.begin(); other != domains.end();) {
       if (!other->box.meets(joined.box)) {
@@ -74,6 +68,11 @@ std::vector<Domain> joinedDomains(const ScenePack& pack, const std::vector<Place
       domains.erase(other);
       other = domains.begin();  // the larger box may meet what the smaller did not
     }
+    const std::int64_t width = joined.box.x1 - joined.box.x0, height = joined.box.y1 - joined.box.y0;
+    if (width > kDomainSideLimit || height > kDomainSideLimit || width * height > kDomainCellsLimit)
+      return Error{std::to_string(joined.bodies.size()) + " touching bodies make a search domain of " + std::to_string(width) + " x " +
+                   std::to_string(height) + " cells, the limit is " + std::to_string(kDomainCellsLimit) + " cells, " +
+                   std::to_string(kDomainSideLimit) + " a side"};
     domains.push_back(std::move(joined));
   }
   std::ranges::sort(domains, [](const Domain& a, const Domain& b) {
@@ -82,57 +81,134 @@ std::vector<Domain> joinedDomains(const ScenePack& pack, const std::vector<Place
   return domains;
 }
 
+/// A tick in the making.
+class Planner {
+ public:
+  Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state, std::span<const Pose> poses)
+      : pack_(pack), reach_q_(reach_q), state_(state), poses_(poses), placed_(poses.size()) {}
+
+  Result<TickPlan> plan() {
+    TickPlan plan;
+    plan.tick = state_.tick + 1;
+    addWoken(pack_, state_, tiles_);
+    placeMoving(plan);
+    if (tiles_.empty()) return plan;
+    std::vector<std::vector<Domain>> domains;
+    // A joined domain may reach tiles that none of its bodies does, and there wake bodies at rest, whose domains join ...
+    do {
+      auto joined = joinAllSteps();
+      if (!joined) return Error{joined.error()};
+      domains = std::move(*joined);
+    } while (placeResting());
+    if (tiles_.size() > kTickTilesLimit)
+      return Error{std::to_string(tiles_.size()) + " active tiles, the limit is " + std::to_string(kTickTilesLimit)};
+    plan.active.assign(tiles_.begin(), tiles_.end());
+    for (int step = 0; step < step_count_; ++step) plan.sub_steps.push_back(takeSubStep(step, std::move(domains[std::size_t(step)])));
+    return plan;
+  }
+
+ private:
+  /// A body that does not move acts only where something else woke the ground; in the first tick all press.
+  bool moves(std::size_t body) const { return state_.tick == 0 || poses_[body] != state_.poses[body]; }
+
+  void placeMoving(TickPlan& plan) {
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+      if (moves(i)) step_count_ = std::max(step_count_, subStepsFor(pack_.cell_q, reach_q_[i], state_.poses[i], poses_[i]));
+    plan.too_fast = step_count_ > kSubStepLimit;
+    step_count_ = std::min(step_count_, kSubStepLimit);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (!moves(i)) continue;
+      // Where it stood, soil that it held up may fall now.
+      addTiles(grown(placeBody(pack_, int(i), state_.poses[i]).box, pack_), tiles_);
+      for (int step = 1; step <= step_count_; ++step)
+        placed_[i].push_back(placeBody(pack_, int(i), interpolate(state_.poses[i], poses_[i], step, step_count_)));
+      for (const PlacedBody& body : placed_[i]) addTiles(grown(body.box, pack_), tiles_);
+      taking_part_.push_back(i);
+    }
+  }
+
+  /// Adds bodies at rest that meet active tiles; returns whether there were any.
+  bool placeResting() {
+    const std::size_t before = taking_part_.size();
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (!placed_[i].empty() || !meetsTiles(roughBox(i), tiles_)) continue;
+      PlacedBody body = placeBody(pack_, int(i), poses_[i]);
+      if (!meetsTiles(grown(body.box, pack_), tiles_)) continue;
+      placed_[i].push_back(std::move(body));
+      taking_part_.push_back(i);
+    }
+    return taking_part_.size() > before;
+  }
+
+  /// A box that holds a body however it is turned, found without looking at its mesh.
+  CellBox roughBox(std::size_t body) const {
+    const auto cellOf = [this](std::int64_t at_q, std::int32_t limit) {
+      return std::int32_t(std::clamp<std::int64_t>(floorDiv(at_q, pack_.cell_q), 0, limit));
+    };
+    const Pose& pose = poses_[body];
+    const std::int64_t reach = reach_q_[body] + std::int64_t(2) * pack_.cell_q;
+    return {cellOf(pose.x_q - reach, pack_.width_cells), cellOf(pose.y_q - reach, pack_.height_cells),
+            cellOf(pose.x_q + reach + pack_.cell_q, pack_.width_cells), cellOf(pose.y_q + reach + pack_.cell_q, pack_.height_cells)};
+  }
+
+  const PlacedBody& placedAt(std::size_t body, int step) const {
+    return placed_[body].size() == 1 ? placed_[body].front() : placed_[body][std::size_t(step)];
+  }
+
+  Result<std::vector<std::vector<Domain>>> joinAllSteps() {
+    std::ranges::sort(taking_part_);
+    std::vector<std::vector<Domain>> domains;
+    for (int step = 0; step < step_count_; ++step) {
+      std::vector<CellBox> boxes;
+      for (const std::size_t body : taking_part_) boxes.push_back(grown(placedAt(body, step).box, pack_));
+      auto joined = joinedDomains(boxes);
+      if (!joined) return Error{joined.error()};
+      for (const Domain& domain : *joined) addTiles(domain.box, tiles_);
+      domains.push_back(std::move(*joined));
+    }
+    return domains;
+  }
+
+  SubStep takeSubStep(int step, std::vector<Domain> domains) {
+    SubStep sub_step;
+    for (const std::size_t body : taking_part_)
+      sub_step.bodies.push_back(placed_[body].size() == 1 ? placed_[body].front() : std::move(placed_[body][std::size_t(step)]));
+    sub_step.domains = std::move(domains);
+    sub_step.sweep_count = (step + 1) * pack_.sweeps_per_tick / step_count_ - step * pack_.sweeps_per_tick / step_count_;
+    return sub_step;
+  }
+
+  const ScenePack& pack_;
+  std::span<const std::int32_t> reach_q_;
+  const WorldState& state_;
+  std::span<const Pose> poses_;
+  std::set<TileCoordinate> tiles_;
+  int step_count_ = 1;
+  std::vector<std::vector<PlacedBody>> placed_;  // [bodies][1, or one for each sub-step]; empty: takes no part
+  std::vector<std::size_t> taking_part_;         // bodies, in the pack's order
+};
+
 }  // namespace
 
-TickPlan planTick(const ScenePack& pack, const WorldState& state, std::span<const Pose> poses) {
-  TickPlan plan;
-  plan.tick = state.tick + 1;
-  const int body_count = int(poses.size());
-  // A body that does not move acts only where something else woke the ground; in the first tick all press.
-  std::vector<bool> takes_part(poses.size());
-  int steps = 1;
-  for (int i = 0; i < body_count; ++i) {
-    takes_part[i] = state.tick == 0 || poses[i] != state.poses[i];
-    if (takes_part[i]) steps = std::max(steps, subStepsFor(pack, i, state.poses[i], poses[i]));
+std::vector<std::int32_t> bodyReaches(const ScenePack& pack) {
+  std::vector<std::int32_t> mesh_reach;
+  for (const Mesh& mesh : pack.meshes) {
+    std::uint64_t farthest = 0;
+    for (const auto& vertex : mesh.vertices) {
+      std::uint64_t square = 0;
+      for (const std::int64_t coordinate : vertex) square += std::uint64_t(coordinate * coordinate);
+      farthest = std::max(farthest, square);
+    }
+    mesh_reach.push_back(std::int32_t(isqrt(farthest) + 1));
   }
-  plan.too_fast = steps > kSubStepLimit;
-  steps = std::min(steps, kSubStepLimit);
+  std::vector<std::int32_t> result;
+  for (const Body& body : pack.bodies) result.push_back(mesh_reach[std::size_t(body.mesh_index)]);
+  return result;
+}
 
-  std::set<TileCoordinate> tiles;
-  addWoken(pack, state, tiles);
-  std::vector<std::vector<PlacedBody>> placed(poses.size());
-  for (int i = 0; i < body_count; ++i) {
-    if (!takes_part[i]) continue;
-    // Where it stood, soil that it held up may fall now.
-    addTiles(grown(placeBody(pack, i, state.poses[i]).box, pack), tiles);
-    for (int step = 1; step <= steps; ++step) {
-      placed[i].push_back(placeBody(pack, i, interpolate(state.poses[i], poses[i], step, steps)));
-      addTiles(grown(placed[i].back().box, pack), tiles);
-    }
-  }
-  if (tiles.empty()) return plan;
-  for (int i = 0; i < body_count; ++i)
-    if (!takes_part[i]) placed[i].push_back(placeBody(pack, i, poses[i]));
-  // A joined domain may reach tiles that none of its bodies does, and there wake bodies at rest, whose domains join ...
-  for (bool grew = true; grew;) {
-    plan.sub_steps.clear();
-    for (int step = 0; step < steps; ++step) {
-      SubStep sub_step;
-      for (int i = 0; i < body_count; ++i)
-        if (takes_part[i]) sub_step.bodies.push_back(placed[i][placed[i].size() == 1 ? 0 : std::size_t(step)]);
-      sub_step.domains = joinedDomains(pack, sub_step.bodies);
-      sub_step.sweep_count = (step + 1) * pack.sweeps_per_tick / steps - step * pack.sweeps_per_tick / steps;
-      for (const Domain& domain : sub_step.domains) addTiles(domain.box, tiles);
-      plan.sub_steps.push_back(std::move(sub_step));
-    }
-    grew = false;
-    for (int i = 0; i < body_count; ++i) {
-      if (takes_part[i] || !meetsTiles(grown(placed[i].back().box, pack), tiles)) continue;
-      takes_part[i] = grew = true;
-    }
-  }
-  plan.active.assign(tiles.begin(), tiles.end());
-  return plan;
+Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
+                          std::span<const Pose> poses) {
+  return Planner(pack, reach_q, state, poses).plan();
 }
 
 }  // namespace spoor

@@ -5,19 +5,6 @@
 
 namespace spoor {
 
-Status validatePoses(const ScenePack& pack, std::span<const Pose> poses) {
-  if (poses.size() != pack.bodies.size())
-    return Error{std::to_string(poses.size()) + " poses for " + std::to_string(pack.bodies.size()) + " bodies"};
-  constexpr std::int32_t edge = 1 << 24;  // a mesh reaches less far
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose& pose = poses[i];
-    const bool inside = pose.x_q > INT32_MIN + edge && pose.x_q < INT32_MAX - edge && pose.y_q > INT32_MIN + edge &&
-                        pose.y_q < INT32_MAX - edge && pose.z_q > -rules::kHeightLimit + edge && pose.z_q < rules::kHeightLimit - edge;
-    if (!inside) return Error{"body " + std::to_string(i) + ": position out of range"};
-  }
-  return {};
-}
-
 PlacedBody placeBody(const ScenePack& pack, int body_index, const Pose& pose) {
   const Mesh& mesh = pack.meshes[std::size_t(pack.bodies[std::size_t(body_index)].mesh_index)];
   PlacedBody placed;

@@ -69,17 +69,6 @@ class RowTarget {
     }
   }
 
-  /// Keeps each segment's lowest underside.
-  void noteLowest() {
-    for (int y = box_.y0; y < box_.y1; ++y)
-      for (int x = box_.x0; x < box_.x1;) {
-        const int end = std::min((x / rules::kTileSize + 1) * rules::kTileSize, box_.x1);
-        std::int32_t& lowest = context_.area.lowest_underside[context_.area.segmentAt(x, y)];
-        lowest = std::min(lowest, context_.kernels.lowest(cellAt(x, y), end - x));
-        x = end;
-      }
-  }
-
  private:
   std::int32_t* cellAt(int x, int y) {
     return context_.area.underside.data() + row_offset_[y - box_.y0] + std::size_t(x - box_.x0);
@@ -178,7 +167,14 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
     for (int y = box.y0; y < box.y1; ++y) row_offset.push_back(context.area.offsetAt(box.x0, y));
     RowTarget target(context, box, row_offset.data());
     for (const int body : chunks[i].domain->bodies) target.draw(orders[body]);
-    target.noteLowest();
+  });
+  // Once all are drawn: a segment may lie under several domains.
+  context.pool.forEach(int(context.area.runs.size()), [&](int i, int) {
+    const Run& run = context.area.runs[i];
+    for (int row = 0; row < rules::kTileSize; ++row)
+      for (int tile = 0; tile < run.tile_count; ++tile)
+        context.area.lowest_underside[run.segment_offset + std::size_t(row * run.tile_count + tile)] =
+            context.kernels.lowest(context.area.underside.data() + run.rowOffset(row) + std::size_t(tile * rules::kTileSize), rules::kTileSize);
   });
 }
 

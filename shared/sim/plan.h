@@ -6,7 +6,7 @@
 
 #include "shaders/rules/raster.h"
 #include "shared/base/result.h"
-#include "shared/world/state.h"
+#include "shared/codec/tile_codec.h"
 
 namespace spoor {
 
@@ -51,13 +51,20 @@ struct TickPlan {
 
 inline constexpr int kSubStepLimit = 32;
 
-/// Checks input poses: one for each body, coordinates far enough from the integers' ends.
-[[nodiscard]] Status validatePoses(const ScenePack& pack, std::span<const Pose> poses);
-
 /// A body of the pack in a pose (valid). Vertices are placed to the subcell below.
 PlacedBody placeBody(const ScenePack& pack, int body_index, const Pose& pose);
 
+/// For each body the largest distance of a vertex from its mesh's origin, 0.1 mm, rounded up.
+std::vector<std::int32_t> bodyReaches(const ScenePack& pack);
+
+// What a tick may ask for. Far beyond real time; a bound for what bytes from outside can make a machine do.
+inline constexpr std::int64_t kDomainSideLimit = 1 << 14;   // cells; also what rules/nearest.h can search
+inline constexpr std::int64_t kDomainCellsLimit = 1 << 24;  // of one domain
+
 /// Stage active: which tiles and bodies take part in the tick that leads from `state` to the given poses (valid).
-TickPlan planTick(const ScenePack& pack, const WorldState& state, std::span<const Pose> poses);
+/// @param reach_q  bodyReaches
+/// Errors: touching bodies join to a domain over the limits, or more than kTickTilesLimit tiles are active.
+Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
+                          std::span<const Pose> poses);
 
 }  // namespace spoor

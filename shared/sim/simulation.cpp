@@ -6,16 +6,17 @@ Simulation::Simulation(const BaseTerrain& base, const PackId& id, std::unique_pt
     : Simulation(base, initialState(id, base), std::move(backend)) {}
 
 Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend)
-    : base_(&base), backend_(std::move(backend)), state_(std::move(state)) {}
+    : base_(&base), reach_q_(bodyReaches(base.pack())), backend_(std::move(backend)), state_(std::move(state)) {}
 
 Result<TickResult> Simulation::step(std::span<const Pose> poses) {
   if (Status status = validatePoses(base_->pack(), poses); !status) return Error{status.error()};
   StageTimes planning{};
-  TickPlan plan;
-  {
+  Result<TickPlan> planned = [&] {
     StageTimer timer(planning, Stage::active);
-    plan = planTick(base_->pack(), state_, poses);
-  }
+    return planTick(base_->pack(), reach_q_, state_, poses);
+  }();
+  if (!planned) return Error{planned.error()};
+  const TickPlan& plan = *planned;
   TickResult result;
   result.effect = backend_->run(plan, *base_, state_);
   result.effect.stage_ms[int(Stage::active)] += planning[int(Stage::active)];

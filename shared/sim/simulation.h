@@ -22,7 +22,8 @@ class Simulation {
   /// Goes on from a state of the same pack, as from a snapshot.
   Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend);
 
-  /// Runs one tick that takes the bodies to `poses`. Errors: poses that validatePoses refuses; the state is untouched.
+  /// Runs one tick that takes the bodies to `poses`. Errors, which leave the state untouched: poses that validatePoses
+  /// refuses, a tick that planTick finds too large.
   Result<TickResult> step(std::span<const Pose> poses);
 
   const WorldState& state() const { return state_; }
@@ -30,6 +31,7 @@ class Simulation {
 
  private:
   const BaseTerrain* base_;
+  std::vector<std::int32_t> reach_q_;  // bodyReaches
   std::unique_ptr<Backend> backend_;
   WorldState state_;
 };

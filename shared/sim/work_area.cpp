@@ -19,8 +19,6 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
     const int from = row < inside_y ? inside_x : 0;
     std::int32_t* underside = area.underside.data() + run.rowOffset(row);
     std::fill(underside + from, underside + run.width(), -rules::kHeightLimit);
-    for (int tile = from / kSize; tile < run.tile_count; ++tile)
-      area.lowest_underside[run.segment_offset + std::size_t(row * run.tile_count + tile)] = -rules::kHeightLimit;
   }
 }
 
@@ -87,7 +85,6 @@ void WorkArea::clearUnderside(const ScenePack& pack, ThreadPool& pool) {
   pool.forEach(int(runs.size()), [&](int i, int) {
     const Run& run = runs[i];
     std::fill_n(underside.begin() + std::ptrdiff_t(run.cell_offset), run.stride() * kSize, rules::kNoUnderside);
-    std::fill_n(lowest_underside.begin() + std::ptrdiff_t(run.segment_offset), run.tile_count * kSize, rules::kNoUnderside);
     closeBorder(pack, *this, run);
   });
 }

@@ -59,7 +59,6 @@ struct WorkArea {
   }
 
   /// Takes all undersides away, but for the world's border, which stays closed.
-  /// `lowest_underside` is then as for no body at all.
   void clearUnderside(const ScenePack& pack, ThreadPool& pool);
 };
 

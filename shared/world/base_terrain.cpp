@@ -64,7 +64,7 @@ void BaseTerrain::fillArea(std::int32_t x, std::int32_t y, std::int32_t stride, 
       std::fill_n(out, columns, 0);
       continue;
     }
-    const Cubic along_y = cubicAt(std::int32_t(cell_y), pack_->samples.step_y_q32);
+    const Cubic along_y = noise ? Cubic{} : cubicAt(std::int32_t(cell_y), pack_->samples.step_y_q32);
     for (std::int32_t column = 0; column < columns; ++column) {
       const std::int64_t cell_x = x + std::int64_t(column) * stride;
       if (cell_x < 0 || cell_x >= pack_->width_cells) {

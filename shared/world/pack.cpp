@@ -13,7 +13,12 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x50525053;  // "SPRP"
 constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kListLimit = 1 << 16;       // meshes, paths, bodies
+constexpr std::size_t kListLimit = 4096;          // meshes, paths, bodies
+constexpr std::size_t kWaypointLimit = 1 << 16;   // of a path
+constexpr std::size_t kWorkLimit = 1 << 24;       // vertices, triangles and edges, over all bodies: a tick visits them all
+constexpr std::int32_t kWorldMargin = 1 << 27;    // waypoints outside the world, 0.1 mm
+constexpr std::int32_t kSoilLimit = (1 << 28) - 1;  // with a cubic's overshoot the base stays within the height limit
+constexpr std::int32_t kStrideLimit = 1 << 20;    // 105 m
 constexpr std::size_t kMeshLimit = 1 << 22;       // vertices, triangles of a mesh
 constexpr std::int32_t kGroundLimit = 1 << 29;    // base heights; leaves as much again for soil that piles up
 constexpr std::int32_t kMeshReach = 1 << 24;      // mesh coordinates, 0.1 mm
@@ -38,8 +43,10 @@ Status validateBase(const ScenePack& pack) {
     SPOOR_CHECK_RANGE(noise.lattice_step_q32, 1, std::int64_t(1) << (33 - noise.octaves));
     SPOOR_CHECK_RANGE(noise.lowest_q, -kGroundLimit, kGroundLimit);
     SPOOR_CHECK_RANGE(noise.highest_q, noise.lowest_q, kGroundLimit);
+    if (pack.samples != SampleBase{}) return Error{"pack: samples given for a base of noise"};
     return {};
   }
+  if (pack.noise != NoiseBase{}) return Error{"pack: noise given for a base of samples"};
   const SampleBase& samples = pack.samples;
   SPOOR_CHECK_RANGE(samples.column_count, 1, 1 << 20);
   SPOOR_CHECK_RANGE(samples.row_count, 1, 1 << 20);
@@ -89,22 +96,22 @@ Status validateBody(const ScenePack& pack, const Body& body) {
   for (const std::int32_t offset_q : body.offset_q) SPOOR_CHECK_RANGE(offset_q, -kMeshReach, kMeshReach);
   SPOOR_CHECK_RANGE(body.sinkage_q, -kMeshReach, kMeshReach);
   SPOOR_CHECK_RANGE(body.roll_radius_q, 0, kMeshReach);
-  SPOOR_CHECK_RANGE(body.stride_q, 0, kMeshReach);
-  SPOOR_CHECK_RANGE(body.lift_q, 0, kMeshReach);
+  SPOOR_CHECK_RANGE(body.stride_q, 0, kStrideLimit);
+  SPOOR_CHECK_RANGE(body.lift_q, 0, kStrideLimit);
   SPOOR_CHECK_RANGE(body.phase_q, 0, kMeshReach);
   SPOOR_CHECK_RANGE(body.follows_slope, 0, 1);
   return {};
 }
 
 Status validatePath(const Path& path) {
-  if (path.waypoints.empty() || path.waypoints.size() > kListLimit)
+  if (path.waypoints.empty() || path.waypoints.size() > kWaypointLimit)
     return Error{"pack: a path needs 1 .. 65536 waypoints, this one has " + std::to_string(path.waypoints.size())};
   SPOOR_CHECK_RANGE(path.speed_q_per_tick, 0, 1 << 20);
   SPOOR_CHECK_RANGE(path.first_tick, 0, 1 << 30);
   SPOOR_CHECK_RANGE(path.closed, 0, 1);
   for (const Waypoint& waypoint : path.waypoints) {
-    SPOOR_CHECK_RANGE(waypoint.x_q, -(1 << 30), 0x7fffffff - kMeshReach * 4);
-    SPOOR_CHECK_RANGE(waypoint.y_q, -(1 << 30), 0x7fffffff - kMeshReach * 4);
+    SPOOR_CHECK_RANGE(waypoint.x_q, -kWorldMargin, 0x7fffffff - kMeshReach * 4);
+    SPOOR_CHECK_RANGE(waypoint.y_q, -kWorldMargin, 0x7fffffff - kMeshReach * 4);
   }
   return {};
 }
@@ -185,22 +192,27 @@ Status validatePack(const ScenePack& pack) {
   SPOOR_CHECK_RANGE(height_q, 1, 0x7fffffff - kMeshReach * 4);
   SPOOR_CHECK_RANGE(pack.ticks_per_second, 1, 1000);
   SPOOR_CHECK_RANGE(pack.default_ticks, 1, 1 << 30);
-  SPOOR_CHECK_RANGE(pack.soil_depth_q, 0, kGroundLimit / 2);
+  SPOOR_CHECK_RANGE(pack.soil_depth_q, 0, kSoilLimit);
   SPOOR_CHECK_RANGE(pack.obstacle_threshold_q, 0, kGroundLimit);
   SPOOR_CHECK_RANGE(pack.slope_threshold_q, 1, kGroundLimit);
   SPOOR_CHECK_RANGE(pack.diagonal_threshold_q, 1, kGroundLimit);
   SPOOR_CHECK_RANGE(pack.sweeps_per_tick, 0, 64);
   if (Status base = validateBase(pack); !base) return base;
   if (pack.meshes.size() > kListLimit || pack.paths.size() > kListLimit || pack.bodies.size() > kListLimit)
-    return Error{"pack: more than 65536 meshes, paths or bodies"};
+    return Error{"pack: more than 4096 meshes, paths or bodies"};
   for (const Mesh& mesh : pack.meshes) {
     if (Status status = validateMesh(mesh); !status) return status;
     if (Status status = validateMeshSize(mesh, pack.cell_q); !status) return status;
   }
   for (const Path& path : pack.paths)
     if (Status status = validatePath(path); !status) return status;
-  for (const Body& body : pack.bodies)
+  std::size_t work = 0;
+  for (const Body& body : pack.bodies) {
     if (Status status = validateBody(pack, body); !status) return Error{status.error() + " (body '" + body.name + "')"};
+    const Mesh& mesh = pack.meshes[std::size_t(body.mesh_index)];
+    work += mesh.vertices.size() + mesh.triangles.size() + mesh.edges.size();
+  }
+  SPOOR_CHECK_RANGE(std::int64_t(work), 0, kWorkLimit);
   return {};
 }
 
@@ -246,8 +258,8 @@ Result<ScenePack> decodePack(std::span<const std::uint8_t> bytes) {
   if (const auto version = reader.get<std::uint32_t>(); version != kVersion)
     return Error{"pack: format version " + std::to_string(version) + ", this program reads " + std::to_string(kVersion)};
   const auto get = [&](auto& value) { value = reader.get<std::remove_reference_t<decltype(value)>>(); };
-  // A count is believed only as far as bytes are left: every element takes at least one.
-  const auto getCount = [&] { return std::min<std::size_t>(reader.get<std::uint32_t>(), reader.left()); };
+  // A list ends where the bytes do, however many elements it announces.
+  const auto getCount = [&] { return reader.get<std::uint32_t>(); };
   ScenePack pack;
   pack.name = reader.getText();
   visitScalars(pack, get);

@@ -22,19 +22,21 @@ std::string toText(const PackId& id);
 /// Ground made by integer gradient noise between two heights.
 struct NoiseBase {
   std::uint64_t seed = 0;
-  std::int64_t lattice_step_q32 = 0;  // lattice units per cell * 2^32, 1 .. 2^32
+  std::int64_t lattice_step_q32 = 0;  // lattice units per cell * 2^32, 1 .. 2^(33 - octaves)
   std::int32_t octaves = 1;           // 1..8; each halves the period and the height
   std::int32_t lowest_q = 0;          // 0.1 mm
   std::int32_t highest_q = 0;         // 0.1 mm, >= lowest_q
+  bool operator==(const NoiseBase&) const = default;
 };
 
 /// Ground interpolated from samples on a regular grid, first row at y = 0 (south), first column at x = 0 (west).
 struct SampleBase {
   std::int32_t column_count = 0;
   std::int32_t row_count = 0;
-  std::int64_t step_x_q32 = 0;        // samples per cell * 2^32, along x and along y; 1 .. 2^40
+  std::int64_t step_x_q32 = 0;        // samples per cell * 2^32, along x and along y; 1 .. 2^38
   std::int64_t step_y_q32 = 0;
   std::vector<std::int32_t> height_q;  // [row_count * column_count], 0.1 mm
+  bool operator==(const SampleBase&) const = default;
 };
 
 enum class BaseKind : std::uint8_t { noise = 0, samples = 1 };
@@ -90,8 +92,8 @@ struct ScenePack {
   std::int32_t diagonal_threshold_q = 1;  // the same for diagonal neighbours, >= 1
   std::int32_t sweeps_per_tick = 10;     // 0..64, shared out over the tick's sub-steps
   BaseKind base_kind = BaseKind::noise;
-  NoiseBase noise;                       // where base_kind is noise
-  SampleBase samples;                    // where base_kind is samples
+  NoiseBase noise;                       // where base_kind is noise, else as made
+  SampleBase samples;                    // where base_kind is samples, else as made
   std::vector<Mesh> meshes;
   std::vector<Path> paths;
   std::vector<Body> bodies;

@@ -22,11 +22,6 @@ std::int32_t blend(std::int32_t from, std::int32_t to, int step, int step_count)
   return std::int32_t(from + floorDiv((std::int64_t(to) - from) * step, step_count));
 }
 
-Turn blendTurn(Turn from, Turn to, int step, int step_count) {
-  const auto shortest = std::int16_t(std::uint16_t(to - from));
-  return Turn(from + floorDiv(std::int64_t(shortest) * step, step_count));
-}
-
 }  // namespace
 
 Rotation rotationOf(const Pose& pose) {
@@ -50,6 +45,10 @@ std::array<std::int32_t, 3> rotate(const Rotation& rotation, const std::array<st
     result[row] = std::int32_t(sum >> 30);
   }
   return result;
+}
+
+Turn blendTurn(Turn from, Turn to, std::int64_t part, std::int64_t whole) {
+  return Turn(from + floorDiv(std::int16_t(std::uint16_t(to - from)) * part, whole));
 }
 
 Pose interpolate(const Pose& from, const Pose& to, int step, int step_count) {

@@ -31,6 +31,9 @@ Rotation rotationOf(const Pose& pose);
 /// matrix * point, rounded to nearest. Range: |point| < 2^30.
 std::array<std::int32_t, 3> rotate(const Rotation& rotation, const std::array<std::int32_t, 3>& point);
 
+/// The turn `part` / `whole` of the way from one to another, the short way round. whole > 0.
+Turn blendTurn(Turn from, Turn to, std::int64_t part, std::int64_t whole);
+
 /// The pose `step` / `step_count` of the way from one pose to the next; turns go the short way round.
 Pose interpolate(const Pose& from, const Pose& to, int step, int step_count);
 

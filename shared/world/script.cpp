@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::int64_t kTurnBlend_q = 5000;  // a corner is turned over half a metre on either side of it
 
-Turn blendTurn(Turn from, Turn to, std::int64_t part, std::int64_t whole) {
-  return Turn(from + floorDiv(std::int16_t(std::uint16_t(to - from)) * part, whole));
-}
-
 }  // namespace
 
 Script::Script(const BaseTerrain& base) : base_(&base) {
@@ -26,7 +22,7 @@ Script::Script(const BaseTerrain& base) : base_(&base) {
       const Waypoint& to = path.waypoints[(i + 1) % count];
       const std::int64_t dx = std::int64_t(to.x_q) - from.x_q;
       const std::int64_t dy = std::int64_t(to.y_q) - from.y_q;
-      track.start_q.push_back(track.start_q.back() + isqrt(std::uint64_t(dx * dx + dy * dy)));
+      track.start_q.push_back(track.start_q.back() + isqrt(std::uint64_t(dx * dx) + std::uint64_t(dy * dy)));
       track.direction.push_back(turnOf(dx, dy));
     }
   }

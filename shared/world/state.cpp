@@ -7,6 +7,19 @@
 #include "shared/world/script.h"
 
 namespace spoor {
+Status validatePoses(const ScenePack& pack, std::span<const Pose> poses) {
+  if (poses.size() != pack.bodies.size())
+    return Error{std::to_string(poses.size()) + " poses for " + std::to_string(pack.bodies.size()) + " bodies"};
+  constexpr std::int32_t edge = 1 << 24;  // a mesh reaches less far
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose& pose = poses[i];
+    const bool inside = pose.x_q > INT32_MIN + edge && pose.x_q < INT32_MAX - edge && pose.y_q > INT32_MIN + edge &&
+                        pose.y_q < INT32_MAX - edge && pose.z_q > -rules::kHeightLimit + edge && pose.z_q < rules::kHeightLimit - edge;
+    if (!inside) return Error{"body " + std::to_string(i) + ": position out of range"};
+  }
+  return {};
+}
+
 std::uint64_t stateHash(const WorldState& state) {
   ByteWriter writer;
   writer.put(state.tick);

@@ -19,6 +19,9 @@ struct WorldState {
   Ledger ledger;
 };
 
+/// Checks poses from outside: one for each body, coordinates far enough from the integers' ends.
+[[nodiscard]] Status validatePoses(const ScenePack& pack, std::span<const Pose> poses);
+
 /// The session's hash: the tiles' sum plus a hash of the canonical bytes of the rest.
 std::uint64_t stateHash(const WorldState& state);
 
