@@ -107,6 +107,26 @@ TEST_F(Codec, TheBoxIsTheSmallestThatHoldsTheChange) {
   EXPECT_EQ(std::pair(change.base_version, change.new_version), std::pair(2, 4));
 }
 
+TEST_F(Codec, HeightsBelowBedrockAndOutsideTheWorldAreRefusedWhateverTheirHash) {
+  // Tile (2, 1) of 150 x 100 cells: column 63 lies outside. Soil is 50 000 deep.
+  for (const auto& [cell, change_q, why] : {std::tuple(0, -50001, "below bedrock"), std::tuple(63, 1, "outside")}) {
+    const auto tile = makeTile({2, 1}, world_.base, 1);
+    const PlaneCells before = tile->height();
+    tile->height()[std::size_t(cell)] += change_q;
+    tile->hash = tileHash(*tile);
+    const TileChange change = differenceOf(*tile, before, kDormantVersion);
+    EXPECT_FALSE(applyTiles(mirror_, world_.base, std::span(&change, 1))) << why;
+    EXPECT_EQ(mirror_.tiles.size(), 0u);
+  }
+}
+
+TEST_F(Codec, DecodeRejectsMoreTilesThanTheLimit) {
+  std::vector<TileChange> changes(3);
+  for (int i = 0; i < 3; ++i) changes[std::size_t(i)].at = {i, 0};
+  EXPECT_TRUE(decodeTiles(encodeTiles(changes), world_.pack, 3));
+  EXPECT_FALSE(decodeTiles(encodeTiles(changes), world_.pack, 2));
+}
+
 TEST_F(Codec, DecodeRejectsEveryTruncationAndATrailingByte) {
   follow(3);
   auto bytes = tick().update.tiles;

@@ -123,6 +123,13 @@ TEST(Nearest, EqualsASearchOverAllCellsWhenSharedOutBetweenThreads) {
   checkAgainstAllCells(Search(401, 299, overlap, 4), "401 x 299");
 }
 
+TEST(Nearest, EqualsASearchOverAllCellsAcrossLongDistances) {
+  // One free cell at each end of neighbouring columns: where the columns change places lies far outside the row.
+  std::vector<std::int32_t> overlap(4 * 1500, kHere);
+  overlap[0] = overlap[4 * 1499 + 1] = overlap[4 * 700 + 3] = kFree;
+  checkAgainstAllCells(Search(4, 1500, overlap), "4 x 1500");
+}
+
 TEST(Nearest, EqualsASearchOverAllCellsAroundRoundAndSquareShapes) {
   for (const int radius : {5, 20, 31})
     for (const bool round : {true, false}) {

@@ -37,10 +37,13 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) con
   const std::uint64_t seed = mix64(std::uint64_t(tick) << 32 | std::uint64_t(at.y) << 16 | std::uint64_t(at.x));
   for (int i = 0; i < rules::kTileCells; ++i) {
     const std::uint64_t draw = mix64(seed + std::uint64_t(i));
-    if (rough_)
-      tile->height()[std::size_t(i)] = std::int32_t(draw % 20000000) - 10000000;
-    else if (draw % 50 == 0)
-      tile->height()[std::size_t(i)] += std::int32_t(draw >> 40) % 100 - 50;
+    const bool inside = at.x * rules::kTileSize + i % rules::kTileSize < pack.width_cells &&
+                        at.y * rules::kTileSize + i / rules::kTileSize < pack.height_cells;
+    std::int32_t& height = tile->height()[std::size_t(i)];
+    if (inside && rough_)
+      height = (*tile->bedrock)[std::size_t(i)] + std::int32_t(draw % 20000000);
+    else if (inside && draw % 50 == 0)
+      height += std::int32_t(draw >> 40) % 100 - 50;
   }
   tile->hash = tileHash(*tile);
   tile->wake_mask = tick % 3 == 0 ? 0 : kWakeSelf;

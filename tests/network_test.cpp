@@ -251,7 +251,7 @@ TEST(Pace, AClientThatTakesNoTicksIsLetGo) {
   Player& other = rig.join("other");
   rig.runUntil([&] { return rig.book.clientsInSync() == 2; });
   stuck.is_frozen = true;
-  rig.play(150);
+  rig.play(260);
   const auto reports = rig.book.reports();
   EXPECT_EQ(reportOf(reports, "stuck").left_because, "too slow: more than 16 MiB of ticks not acknowledged");
   EXPECT_LT(reportOf(reports, "stuck").tick_bytes_sent, std::uint64_t(18) << 20);

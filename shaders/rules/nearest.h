@@ -21,7 +21,8 @@ RULE int nearestSwitch(int y, int ax, int ay, int bx, int by) {
   int gap = (bx - ax) * (bx + ax) + (y - by) * (y - by) - (y - ay) * (y - ay);
   int twice = 2 * (bx - ax);
   int x = -floorDiv(-gap, twice);
-  return nearestBefore(x, y, bx, by, ax, ay) ? x : x + 1;
+  // Equally near at x only where the division left nothing; compared so because squares there may not fit.
+  return twice * x == gap && by >= ay ? x + 1 : x;
 }
 
 SPOOR_RULES_END

@@ -87,7 +87,7 @@ RULE int triangleHeight(RasterTriangle t, int x, int row) {
   return clampInt(t.a.z + rise, t.lowest, t.highest);
 }
 
-/// Height `cells` further along the span whose first cell has height `first`; within 1 unit of the plane, rounded down.
+/// Height `cells` further along the span whose first cell has height `first`: at most 2 units below the plane.
 RULE int triangleHeightAlong(int first, int step, int step_fraction, int cells, int lowest, int highest) {
   return clampInt(first + step * cells + ((step_fraction * cells) >> 16), lowest, highest);
 }

@@ -39,7 +39,8 @@ Status checkEntry(const Entry& entry, TileCoordinate extent) {
     return wrong("lies outside the world");
   if (change.base_version < kDormantVersion || change.new_version < change.base_version || change.new_version < 0)
     return wrong("versions run backwards");
-  if (change.wake_mask >= kWakeMaskLimit) return wrong("wake mask has unknown bits");
+  if (change.wake_mask >= kWakeMaskLimit || (change.wake_mask != 0 && (change.wake_mask & kWakeSelf) == 0))
+    return wrong("wake mask is none that a tick makes");
   if (entry.planes > 1) return wrong("names a plane that this version does not know");
   if ((entry.planes == 1) != (change.width > 0) || (change.width > 0) != (change.height > 0) ||
       (change.width > 0) != (entry.byte_count > 0) || entry.byte_count > 4)
@@ -168,11 +169,13 @@ Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileC
   auto d = change.difference.begin();
   for (int y = change.y; y < change.y + change.height; ++y)
     for (int x = change.x; x < change.x + change.width; ++x) {
-      std::int32_t& cell = (*prepared.height)[std::size_t(y * rules::kTileSize + x)];
-      const std::int64_t height = std::int64_t(cell) + *d++;
-      if (height < -rules::kHeightLimit || height > rules::kHeightLimit)
-        return Error{nameOf(change.at) + ": a height leaves the range"};
-      cell = std::int32_t(height);
+      const auto i = std::size_t(y * rules::kTileSize + x);
+      const std::int64_t height = std::int64_t((*prepared.height)[i]) + *d++;
+      const bool inside = change.at.x * rules::kTileSize + x < base.pack().width_cells &&
+                          change.at.y * rules::kTileSize + y < base.pack().height_cells;
+      if (height < (*tile.bedrock)[i] || height > (inside ? rules::kHeightLimit : 0))
+        return Error{nameOf(change.at) + ": a height lies below bedrock, above the limit or outside the world"};
+      (*prepared.height)[i] = std::int32_t(height);
     }
   // The hash is over all planes; with height as the only one, its cells are the whole.
   const std::uint64_t hash = kernels().hashTile(prepared.height->data(), change.at.x * rules::kTileSize,
