@@ -148,7 +148,7 @@ std::vector<Chunk> chunksOf(const SubStep& sub_step, int thread_count) {
   std::vector<Chunk> chunks;
   for (const Domain& domain : sub_step.domains) {
     const int rows = domain.box.y1 - domain.box.y0;
-    const int chunk_rows = thread_count == 1 ? rows : std::max(kLeastRows, rows / (2 * thread_count) + 1);
+    const int chunk_rows = std::max<int>(kLeastRows, rows * int(sub_step.domains.size()) / thread_count + 1);
     for (int y = domain.box.y0; y < domain.box.y1; y += chunk_rows)
       chunks.push_back({&domain, {domain.box.x0, y, domain.box.x1, std::min(y + chunk_rows, domain.box.y1)}});
   }
