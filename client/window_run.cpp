@@ -23,6 +23,7 @@ constexpr double kTurn_rad_per_px = 0.0025;
 constexpr double kPitchLimit_rad = 1.5;
 constexpr double kEyeClearance_m = 0.3;
 constexpr double kLongestStep_s = 0.2;
+constexpr double kIdleFrame_s = 1.0 / 30;
 
 /// A key that counts once for each press.
 class Press {
@@ -113,7 +114,11 @@ Status runInWindow(ClientSession& session, const WindowContext& context, const R
   double last_s = glfwGetTime();
   bool told_end = false;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && glfwGetKey(window, GLFW_KEY_ESCAPE) != GLFW_PRESS) {
-    glfwPollEvents();
+    if (session.ended()) {
+      glfwWaitEventsTimeout(kIdleFrame_s);  // nothing moves any more but the camera
+    } else {
+      glfwPollEvents();
+    }
     if (!session.ended())
       if (const Status served = session.update(session.inSync() ? 1 : 20); !served) return served;
     if (session.ended() && !told_end) {

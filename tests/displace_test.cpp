@@ -122,6 +122,8 @@ TEST(Displace, RowsThatShareTargetsDoNotRace) {
     runPenetration(rig.context, rig.domain);
     rig.domain.target.resize(rig.domain.overlap.size());
     for (std::size_t i = 0; i < rig.domain.target.size(); ++i) rig.domain.target[i] = int(i % 2);
+    rig.domain.receives.assign(kRows, 0);
+    rig.domain.receives[0] = 1;
     runDisplace(rig.context, rig.domain, 0);
     ASSERT_EQ(rig.area.height[rig.area.offsetAt(0, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
     ASSERT_EQ(rig.area.height[rig.area.offsetAt(1, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;

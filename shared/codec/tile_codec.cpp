@@ -74,6 +74,7 @@ TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t
   change.y = std::uint8_t(y_first);
   change.width = std::uint8_t(x_last - x_first + 1);
   change.height = std::uint8_t(y_last - y_first + 1);
+  change.difference.reserve(std::size_t(change.width) * change.height);
   for (int y = y_first; y <= y_last; ++y)
     for (int x = x_first; x <= x_last; ++x) change.difference.push_back(after[y * size + x] - before[y * size + x]);
   return change;
@@ -97,7 +98,10 @@ std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes) {
   for (int byte = 0; byte < 4; ++byte)
     for (std::size_t i = 0; i < changes.size(); ++i) {
       if (byte_counts[i] <= byte) continue;
-      for (const std::int32_t d : changes[i].difference) writer.bytes.push_back(std::uint8_t(zigzag(d) >> (8 * byte)));
+      const std::size_t at = writer.bytes.size();
+      writer.bytes.resize(at + changes[i].difference.size());
+      std::ranges::transform(changes[i].difference, writer.bytes.begin() + std::ptrdiff_t(at),
+                             [byte](std::int32_t d) { return std::uint8_t(zigzag(d) >> (8 * byte)); });
     }
   return std::move(writer.bytes);
 }

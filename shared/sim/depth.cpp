@@ -166,7 +166,8 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
     std::vector<std::size_t> row_offset;
     for (int y = box.y0; y < box.y1; ++y) row_offset.push_back(context.area.offsetAt(box.x0, y));
     RowTarget target(context, box, row_offset.data());
-    for (const int body : chunks[i].domain->bodies) target.draw(orders[body]);
+    for (const int body : chunks[i].domain->bodies)
+      if (sub_step.bodies[body].box.meets(box)) target.draw(orders[body]);
   });
   // Once all are drawn: a segment may lie under several domains.
   context.pool.forEach(int(context.area.runs.size()), [&](int i, int) {

@@ -11,14 +11,13 @@ namespace {
 
 /// Adds a row's requests to their targets, one atomic add for each stretch of cells that share a target.
 template <typename AmountOf>
-void addToTargets(DomainWork& domain, int row, std::vector<std::int64_t>& sums, AmountOf amount_of) {
+void addToTargets(const DomainWork& domain, int row, std::vector<std::int64_t>& sums, AmountOf amount_of) {
   const int width = domain.width();
   std::int32_t target = rules::kNoTarget;
   std::int64_t amount = 0;
   const auto flush = [&] {
     if (amount == 0) return;
     std::atomic_ref(sums[std::size_t(target)]).fetch_add(amount, std::memory_order_relaxed);
-    std::atomic_ref(domain.receives[std::size_t(target / width)]).store(1, std::memory_order_relaxed);
   };
   for (std::size_t i = std::size_t(row) * width; i < std::size_t(row + 1) * width; ++i) {
     if (domain.overlap[i] <= 0 || domain.target[i] == rules::kNoTarget) continue;
@@ -79,7 +78,6 @@ void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t 
   const int task_rows = rowsPerTask(domain.width());
   domain.requested.resize(std::max(domain.requested.size(), domain.overlap.size()));
   domain.granted.resize(domain.requested.size());
-  domain.receives.assign(std::size_t(domain.rows()), 0);
   domain.room.resize(domain.requested.size());
   const auto forEachRow = [&](auto body) {
     context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int) {

@@ -27,9 +27,9 @@ struct DomainWork {
   int penetrating_count = 0;
   std::vector<std::int32_t> nearest_row;    // y of the nearest free cell of the same column, relative to the box
   std::vector<std::int32_t> target;         // index of the nearest free cell in this domain, or kNoTarget
+  std::vector<std::uint8_t> receives;       // [rows] does the row hold a target?
   std::vector<std::int64_t> requested;      // soil that wants to come to a cell; 0 everywhere between sub-steps
   std::vector<std::int32_t> room;           // what a cell with requests can take, kRoomForAll where they fit
-  std::vector<std::uint8_t> receives;       // [rows] does the row hold a cell with requests?
   std::vector<std::int64_t> granted;        // what was let in where not all fits; 0 everywhere between sub-steps
 
   static constexpr std::int32_t kRoomForAll = INT32_MAX;
@@ -52,7 +52,7 @@ void runDepth(const NativeContext& context, const SubStep& sub_step);
 /// Stage penetration: fills overlap and its counts.
 void runPenetration(const NativeContext& context, DomainWork& domain);
 
-/// Stage nearest: fills target for penetrating cells. Only where penetrating_count > 0.
+/// Stage nearest: fills target for penetrating cells, and receives. Only where penetrating_count > 0.
 void runNearest(const NativeContext& context, DomainWork& domain);
 
 /// Stage displace: moves the soil; marks changed segments with `step`. Only after runNearest.

@@ -1,5 +1,6 @@
 // Stage nearest: the exact nearest free cell of every penetrating one, in two passes.
 #include <algorithm>
+#include <atomic>
 
 #include "shaders/rules/nearest.h"
 #include "shared/sim/native_stages.h"
@@ -30,7 +31,8 @@ void searchColumns(const NativeContext& context, DomainWork& domain) {
 /// The best column from each x of a row: the lower envelope of the columns' parabolas, left to right.
 class RowEnvelope {
  public:
-  void search(const DomainWork& domain, int y, std::int32_t* target) {
+  void search(DomainWork& domain, int y) {
+    std::int32_t* target = domain.target.data() + std::size_t(y) * domain.width();
     const int width = domain.width();
     const std::int32_t* overlap = domain.overlap.data() + std::size_t(y) * width;
     const std::int32_t* free_row = domain.nearest_row.data() + std::size_t(y) * width;
@@ -41,10 +43,16 @@ class RowEnvelope {
       if (overlap[x] > 0) reach = std::max(reach, free_row[x] == kNoFreeRow ? width : std::abs(free_row[x] - y));
     build(free_row, y, std::max(first - reach, 0), std::min(last + reach + 1, width));
     std::size_t part = 0;
+    int marked_row = -1;
     for (int x = first; x <= last; ++x) {
       while (part + 1 < columns_.size() && starts_[part + 1] <= x) ++part;
-      if (overlap[x] > 0)
-        target[x] = columns_.empty() ? rules::kNoTarget : free_row[columns_[part]] * width + columns_[part];
+      if (overlap[x] <= 0) continue;
+      target[x] = rules::kNoTarget;
+      if (columns_.empty()) continue;
+      const int row = free_row[columns_[part]];
+      target[x] = row * width + columns_[part];
+      if (row != marked_row) std::atomic_ref(domain.receives[std::size_t(row)]).store(1, std::memory_order_relaxed);
+      marked_row = row;
     }
   }
 
@@ -85,13 +93,14 @@ void runNearest(const NativeContext& context, DomainWork& domain) {
   const std::size_t cells = domain.overlap.size();
   domain.nearest_row.resize(cells);
   domain.target.resize(cells);
+  domain.receives.assign(std::size_t(domain.rows()), 0);
   searchColumns(context, domain);
   std::vector<RowEnvelope> envelopes(std::size_t(context.pool.threadCount()));
   const int task_rows = std::max(1, rowsPerTask(domain.width()) / 4);  // a row costs more here than elsewhere
   context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int thread) {
     for (int y = task * task_rows; y < std::min((task + 1) * task_rows, domain.rows()); ++y)
       if (domain.penetrating_in_row[y] > 0)
-        envelopes[thread].search(domain, y, domain.target.data() + std::size_t(y) * domain.width());
+        envelopes[thread].search(domain, y);
   });
 }
 
