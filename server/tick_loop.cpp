@@ -84,6 +84,8 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     if (writer != nullptr) writer->append({tick, std::move(poses), hash, simulation.state().ledger});
     if (host != nullptr) host->publish(std::move(result->update));
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
+    if (result->too_fast && figures.too_fast_ticks == 0)
+      say(fmt::format("tick {}: a body moves farther than one cell in each of {} sub-steps; its trail may have gaps", tick, kSubStepLimit));
     note(figures, *result, simulation.state(), tick_ms);
     if (Clock::now() - said > std::chrono::seconds(1) || tick == options.ticks) {
       said = Clock::now();

@@ -148,11 +148,16 @@ class Relaxation {
     const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
     const Band& band_a = area_.bands[row_a / kSize];
     const Band& band_b = area_.bands[row_b / kSize];
-    const bool same = &band_a == &band_b;
     std::int64_t visited = 0;
-    for (int i = band_a.first_run; i < band_a.first_run + band_a.run_count; ++i)
-      for (int j = same ? i : band_b.first_run; j < (same ? i + 1 : band_b.first_run + band_b.run_count); ++j)
-        visited += exchangeRuns(area_.runs[i], row_a, area_.runs[j], row_b, shift, step);
+    // Both bands' runs lie in x order; a run meets those that reach within a cell of it.
+    int first = band_b.first_run;
+    const int end = band_b.first_run + band_b.run_count;
+    for (int i = band_a.first_run; i < band_a.first_run + band_a.run_count; ++i) {
+      const Run& run = area_.runs[i];
+      while (first < end && area_.runs[first].x1() < run.x0()) ++first;
+      for (int j = first; j < end && area_.runs[j].x0() <= run.x1(); ++j)
+        visited += exchangeRuns(run, row_a, area_.runs[j], row_b, shift, step);
+    }
     return visited;
   }
 

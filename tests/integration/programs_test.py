@@ -65,11 +65,11 @@ def client_hash(out):
 def clients_and_replay_end_on_the_servers_hash(scratch):
     """Two clients from the start, one killed and joined again in the middle, a replay: one hash."""
     session, figures = scratch / "convoy.session", scratch / "convoy.json"
-    server = Server(f"--scene={SOURCE}/scenes/convoy.toml", "--ticks=240", "--rate=60", "--wait-clients=2",
+    server = Server(f"--scene={SOURCE}/scenes/convoy.toml", "--ticks=540", "--rate=60", "--wait-clients=2",
                     f"--session={session}", f"--json={figures}")
     steady = server.join("steady", f"--out={scratch}/steady")
     leaving = server.join("leaving", f"--out={scratch}/leaving")
-    server.line_with(r"tick +\d+ of 240")
+    server.line_with(r"tick +\d+ of 540")
     leaving.send_signal(signal.SIGKILL)
     leaving.wait()
     again = server.join("again", f"--out={scratch}/again")
