@@ -44,8 +44,8 @@ int fail(const std::string& why) {
 void report(const LoadedScene& scene, const std::string& out) {
   const ScenePack& pack = scene.pack;
   for (const std::string& note : scene.notes) std::printf("note: %s\n", note.c_str());
-  std::printf("scene  %s: %zu meshes, %zu paths, %zu bodies, %d ticks at %d Hz\n", pack.name.c_str(), pack.meshes.size(),
-              pack.paths.size(), pack.bodies.size(), pack.default_ticks, pack.ticks_per_second);
+  std::printf("scene  %s: %zu meshes, %zu paths, %zu bodies, %d ticks at %d Hz\n", pack.name.c_str(),
+              pack.meshes.size(), pack.paths.size(), pack.bodies.size(), pack.default_ticks, pack.ticks_per_second);
   std::printf("world  %d x %d cells of %g m: %.1f x %.1f m\n", pack.width_cells, pack.height_cells, pack.cell_q / 1e4,
               pack.width_cells * (pack.cell_q / 1e4), pack.height_cells * (pack.cell_q / 1e4));
   std::printf("pack   %s: %zu bytes, id %s\n", out.c_str(), scene.encoded.size(), toText(scene.id).c_str());

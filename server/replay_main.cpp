@@ -17,8 +17,8 @@ int fail(const std::string& why) {
 
 void printInfo(const SessionReader& reader) {
   const ScenePack& pack = reader.pack();
-  std::printf("scene %s, pack %s\nworld %d x %d cells of %g m, %zu bodies\n", pack.name.c_str(), toText(reader.id()).c_str(),
-              pack.width_cells, pack.height_cells, pack.cell_q / 1e4, pack.bodies.size());
+  std::printf("scene %s, pack %s\nworld %d x %d cells of %g m, %zu bodies\n", pack.name.c_str(),
+              toText(reader.id()).c_str(), pack.width_cells, pack.height_cells, pack.cell_q / 1e4, pack.bodies.size());
 }
 
 int info(SessionReader& reader) {
@@ -30,8 +30,9 @@ int info(SessionReader& reader) {
     if (!*record) break;
     last = std::move(**record);
   }
-  std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick, reader.truncated() ? " (the file ends within the next)" : "",
-              hexText(last.state_hash).c_str(), static_cast<long long>(last.ledger.error()));
+  std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick,
+              reader.truncated() ? " (the file ends within the next)" : "", hexText(last.state_hash).c_str(),
+              static_cast<long long>(last.ledger.error()));
   return 0;
 }
 
@@ -43,9 +44,10 @@ int exportTicks(SessionReader& reader) {
     if (!record) return fail(record.error());
     if (!*record) return 0;
     const TickRecord& tick = **record;
-    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld\n", tick.tick, hexText(tick.state_hash).c_str(), static_cast<long long>(tick.ledger.initial),
-                static_cast<long long>(tick.ledger.ground), static_cast<long long>(tick.ledger.compacted),
-                static_cast<long long>(tick.ledger.craters), static_cast<long long>(tick.ledger.events));
+    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld\n", tick.tick, hexText(tick.state_hash).c_str(),
+                static_cast<long long>(tick.ledger.initial), static_cast<long long>(tick.ledger.ground),
+                static_cast<long long>(tick.ledger.compacted), static_cast<long long>(tick.ledger.craters),
+                static_cast<long long>(tick.ledger.events));
   }
 }
 
@@ -65,13 +67,15 @@ int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
       return fail("tick " + std::to_string(tick.tick) + ": hash " + hexText(result->update.state_hash) + " here, " +
                   hexText(tick.state_hash) + " recorded");
     if (simulation.state().ledger != tick.ledger || tick.ledger.error() != 0)
-      return fail("tick " + std::to_string(tick.tick) + ": the ledger is off by " + std::to_string(simulation.state().ledger.error()) +
-                  " here, by " + std::to_string(tick.ledger.error()) + " in the record");
+      return fail("tick " + std::to_string(tick.tick) + ": the ledger is off by " +
+                  std::to_string(simulation.state().ledger.error()) + " here, by " +
+                  std::to_string(tick.ledger.error()) + " in the record");
     if (tick.tick % 100 == 0) std::fprintf(stderr, "tick %d\n", tick.tick);
   }
   if (simulation.state().tick == 0) return fail("the session holds no ticks");
   std::printf("verified %d ticks%s: every hash and ledger equal, last hash %s\n", simulation.state().tick,
-              reader.truncated() ? " (the file ends within the next)" : "", hexText(stateHash(simulation.state())).c_str());
+              reader.truncated() ? " (the file ends within the next)" : "",
+              hexText(stateHash(simulation.state())).c_str());
   return 0;
 }
 
@@ -79,7 +83,8 @@ int run(int argc, char** argv) {
   std::vector<std::string> arguments;
   std::string backend_name = "auto";
   std::int64_t threads = 0;
-  Options options("spoor-replay", "reads a session file: info, verify (run it again), export (one CSV line for each tick)");
+  Options options("spoor-replay",
+                  "reads a session file: info, verify (run it again), export (one CSV line for each tick)");
   options.addPlain("info|verify|export FILE", "what to do, with which session file", &arguments, 2);
   options.add("backend", "NAME", "auto or native", &backend_name);
   options.add("threads", "N", "of the native backend; 0: one for each processor", &threads, 0, 256);

@@ -11,7 +11,8 @@ namespace {
 
 std::int64_t meanCells(const LoopFigures& figures) {
   if (figures.active_cells.empty()) return 0;
-  return std::int64_t(std::accumulate(figures.active_cells.begin(), figures.active_cells.end(), 0.0) / double(figures.active_cells.size()));
+  return std::int64_t(std::accumulate(figures.active_cells.begin(), figures.active_cells.end(), 0.0) /
+                      double(figures.active_cells.size()));
 }
 
 double bytesPerTick(const ClientReport& client) {
@@ -32,16 +33,19 @@ bool endedEqual(const SessionReport& report, const ClientReport& client) {
 
 std::vector<std::string> faultsOf(const SessionReport& report, int expected_clients) {
   std::vector<std::string> faults;
-  if (report.figures.unbalanced_ticks > 0) faults.push_back(fmt::format("the ledger was off in {} ticks", report.figures.unbalanced_ticks));
+  if (report.figures.unbalanced_ticks > 0)
+    faults.push_back(fmt::format("the ledger was off in {} ticks", report.figures.unbalanced_ticks));
   if (report.ledger.error() != 0) faults.push_back(fmt::format("the ledger is off by {} units", report.ledger.error()));
   int equal = 0;
   for (const ClientReport& client : report.clients) {
     equal += endedEqual(report, client) ? 1 : 0;
-    if (client.mismatches > 0) faults.push_back(fmt::format("client '{}' had {} wrong hashes", client.name, client.mismatches));
+    if (client.mismatches > 0)
+      faults.push_back(fmt::format("client '{}' had {} wrong hashes", client.name, client.mismatches));
     if (client.confirmed_tick == report.ticks && client.confirmed_hash != report.server_hash)
       faults.push_back(fmt::format("client '{}' ended on another hash", client.name));
   }
-  if (equal < expected_clients) faults.push_back(fmt::format("{} of {} clients ended on the server's hash", equal, expected_clients));
+  if (equal < expected_clients)
+    faults.push_back(fmt::format("{} of {} clients ended on the server's hash", equal, expected_clients));
   return faults;
 }
 
@@ -50,27 +54,36 @@ std::string tableOf(const SessionReport& report) {
   const double busy_ms = std::accumulate(figures.tick_ms.begin(), figures.tick_ms.end(), 0.0);
   const double kept_ticks = double(figures.tick_ms.size());
   std::string text;
-  const auto row = [&](std::string_view name, const std::string& value) { text += fmt::format("{:<22} {}\n", name, value); };
+  const auto row = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("{:<22} {}\n", name, value);
+  };
   row("scene", fmt::format("{} (pack {})", report.scene, report.pack_id));
   row("backend", fmt::format("{}, renderer {}", report.backend, report.renderer));
-  row("ticks", fmt::format("{} in {:.2f} s = {:.1f} ticks/s; {:.1f} ticks/s were possible; {} began late", report.ticks, figures.wall_s,
-                           report.ticks / figures.wall_s, busy_ms > 0 ? kept_ticks / busy_ms * 1e3 : 0, figures.late_ticks));
-  row("ms per tick", fmt::format("{:.3f} median, {:.3f} 99th percentile", percentile(figures.tick_ms, 0.5), percentile(figures.tick_ms, 0.99)));
+  row("ticks", fmt::format("{} in {:.2f} s = {:.1f} ticks/s; {:.1f} ticks/s were possible; {} began late", report.ticks,
+                           figures.wall_s, report.ticks / figures.wall_s, busy_ms > 0 ? kept_ticks / busy_ms * 1e3 : 0,
+                           figures.late_ticks));
+  row("ms per tick", fmt::format("{:.3f} median, {:.3f} 99th percentile", percentile(figures.tick_ms, 0.5),
+                                 percentile(figures.tick_ms, 0.99)));
   for (int stage = 0; stage < kStageCount; ++stage)
     if (percentile(figures.stage_ms[stage], 1) > 0)
-      row(fmt::format("  {}", kStageNames[stage]), fmt::format("{:.3f} median, {:.3f} 99th percentile", percentile(figures.stage_ms[stage], 0.5),
-                                                               percentile(figures.stage_ms[stage], 0.99)));
-  row("active cells", fmt::format("{} mean; {} live tiles, {:.2f} MB", meanCells(figures), report.live_tiles, double(report.store_bytes) / 1e6));
+      row(fmt::format("  {}", kStageNames[stage]),
+          fmt::format("{:.3f} median, {:.3f} 99th percentile", percentile(figures.stage_ms[stage], 0.5),
+                      percentile(figures.stage_ms[stage], 0.99)));
+  row("active cells", fmt::format("{} mean; {} live tiles, {:.2f} MB", meanCells(figures), report.live_tiles,
+                                  double(report.store_bytes) / 1e6));
   row("bytes per tick, client", fmt::format("{:.0f}", meanBytesPerTick(report)));
-  row("ledger", fmt::format("initial {} = ground {} + compacted {} - craters {} - events {}; error {}", report.ledger.initial,
-                            report.ledger.ground, report.ledger.compacted, report.ledger.craters, report.ledger.events, report.ledger.error()));
-  if (figures.too_fast_ticks > 0) row("too fast", fmt::format("in {} ticks a body outran its sub-steps", figures.too_fast_ticks));
+  row("ledger", fmt::format("initial {} = ground {} + compacted {} - craters {} - events {}; error {}",
+                            report.ledger.initial, report.ledger.ground, report.ledger.compacted, report.ledger.craters,
+                            report.ledger.events, report.ledger.error()));
+  if (figures.too_fast_ticks > 0)
+    row("too fast", fmt::format("in {} ticks a body outran its sub-steps", figures.too_fast_ticks));
   row("hash server", hexText(report.server_hash));
   for (const ClientReport& client : report.clients)
     row(fmt::format("hash {}", client.name),
-        fmt::format("{} at tick {}{}{}; {:.0f} B/tick, joined with {} B", hexText(client.confirmed_hash), client.confirmed_tick,
-                    endedEqual(report, client) ? ", equal" : "", client.left_because.empty() ? "" : ", left: " + client.left_because,
-                    bytesPerTick(client), client.snapshot_bytes_sent));
+        fmt::format("{} at tick {}{}{}; {:.0f} B/tick, joined with {} B", hexText(client.confirmed_hash),
+                    client.confirmed_tick, endedEqual(report, client) ? ", equal" : "",
+                    client.left_because.empty() ? "" : ", left: " + client.left_because, bytesPerTick(client),
+                    client.snapshot_bytes_sent));
   return text;
 }
 

@@ -19,7 +19,8 @@ struct SessionReport {
   std::size_t live_tiles = 0, store_bytes = 0;
 };
 
-/// Why the session does not hold what Spoor promises: a hash or the ledger is off, or a client was lost. Empty: it does.
+/// Why the session does not hold what Spoor promises: a hash or the ledger is off, or a client was lost. Empty: it
+/// does.
 std::vector<std::string> faultsOf(const SessionReport& report, int expected_clients);
 
 std::string tableOf(const SessionReport& report);

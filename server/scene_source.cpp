@@ -34,12 +34,14 @@ void addSceneOptions(Options& options, SceneSource& source) {
   options.add("terrain", "FILE", "instead of a scene: a DEM, heights in metres", &source.terrain.terrain);
   options.add("cell", "M", "with --terrain: side of a cell in metres", &source.terrain.cell_m, 0.0001, 100.0);
   options.add("body", "FILE", "with --terrain: mesh of a body to drive over it", &source.terrain.bodies);
-  options.add("up", "AXIS", "with --terrain: up axis of the meshes, y or z; none: the format's own", &source.terrain.up);
+  options.add("up", "AXIS", "with --terrain: up axis of the meshes, y or z; none: the format's own",
+              &source.terrain.up);
 }
 
 Result<LoadedScene> loadScene(const SceneSource& source) {
   if (source.scene.empty() == source.terrain.terrain.empty()) return Error{"give either --scene or --terrain"};
-  if (!source.scene.empty() && !source.terrain.bodies.empty()) return Error{"--body goes with --terrain; a scene names its own"};
+  if (!source.scene.empty() && !source.terrain.bodies.empty())
+    return Error{"--body goes with --terrain; a scene names its own"};
   if (source.scene.empty()) {
     auto imported = importTerrain(source.terrain);
     if (!imported) return Error{imported.error()};

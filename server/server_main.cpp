@@ -29,7 +29,8 @@ void parse(int argc, char** argv, Settings& settings) {
   options.add("backend", "NAME", "auto or native", &settings.backend);
   options.add("threads", "N", "of the native backend; 0: one for each processor", &settings.threads, 0, 256);
   options.add("ticks", "N", "length of the session; 0: as the scene says", &settings.ticks, 0, 1 << 30);
-  options.add("rate", "HZ", "ticks per second; 0: as fast as they go; -1: as the scene says", &settings.rate_hz, -1.0, 1000.0);
+  options.add("rate", "HZ", "ticks per second; 0: as fast as they go; -1: as the scene says", &settings.rate_hz, -1.0,
+              1000.0);
   options.add("session", "FILE", "record the session there", &settings.session);
   options.add("seed", "N", "instead of the scene's seed; -1: the scene's", &settings.seed, -1, INT64_MAX);
   options.add("wait-clients", "N", "begin when so many clients are in sync", &settings.wait_clients, 0, 1000);
@@ -69,7 +70,8 @@ void awaitClients(const SessionHost& host, const Settings& settings) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(settings.wait_s);
   while (host.clientsInSync() < settings.wait_clients) {
     if (std::chrono::steady_clock::now() > end)
-      throw std::runtime_error(fmt::format("{} of {} clients came within {} s", host.clientsInSync(), settings.wait_clients, settings.wait_s));
+      throw std::runtime_error(fmt::format("{} of {} clients came within {} s", host.clientsInSync(),
+                                           settings.wait_clients, settings.wait_s));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
@@ -82,8 +84,8 @@ int run(int argc, char** argv) {
   for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
   const BaseTerrain base(scene.pack);
   Simulation simulation(base, scene.id, orThrow(makeBackend(settings.backend, {int(settings.threads), nullptr, true})));
-  spdlog::info("scene {}, {} x {} cells of {} m, pack {}", scene.pack.name, scene.pack.width_cells, scene.pack.height_cells,
-               scene.pack.cell_q / 1e4, toText(scene.id));
+  spdlog::info("scene {}, {} x {} cells of {} m, pack {}", scene.pack.name, scene.pack.width_cells,
+               scene.pack.height_cells, scene.pack.cell_q / 1e4, toText(scene.id));
   spdlog::info("backend {}", simulation.backend().name());
   std::unique_ptr<SessionWriter> writer;
   if (!settings.session.empty()) writer = orThrow(SessionWriter::create(settings.session, scene.encoded));
@@ -98,7 +100,8 @@ int run(int argc, char** argv) {
   loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
   loop.rate_hz = settings.rate_hz < 0 ? scene.pack.ticks_per_second : settings.rate_hz;
   SessionReport report;
-  report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), [](const std::string& line) { spdlog::info(line); });
+  report.figures =
+      runTicks(simulation, base, loop, host.get(), writer.get(), [](const std::string& line) { spdlog::info(line); });
   report.clients = host->finish(30);
   report.scene = scene.pack.name;
   report.pack_id = toText(scene.id);

@@ -18,14 +18,14 @@ struct HostOptions {
 /// What is known of a client, present or gone.
 struct ClientReport {
   std::string name;
-  bool in_sync = false;             // its last confirmation carried our hash, and it stayed connected until the end
+  bool in_sync = false;  // its last confirmation carried our hash, and it stayed connected until the end
   std::int32_t confirmed_tick = -1;
   std::uint64_t confirmed_hash = 0;  // the client's own state hash at that tick
   std::int32_t mismatches = 0;       // confirmations whose hash was not ours, and ticks it could not apply
   std::int32_t ticks_sent = 0;
   std::uint64_t tick_bytes_sent = 0;      // of tick updates, as sent (compressed, with frame headers)
   std::uint64_t snapshot_bytes_sent = 0;  // of packs and snapshots
-  std::string left_because;          // empty while connected
+  std::string left_because;               // empty while connected
 };
 
 /// Serves a session to clients on a thread of its own. That thread keeps a mirror of the state, fed by the published

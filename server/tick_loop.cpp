@@ -85,12 +85,13 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     if (host != nullptr) host->publish(std::move(result->update));
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
     if (result->too_fast && figures.too_fast_ticks == 0)
-      say(fmt::format("tick {}: a body moves farther than one cell in each of {} sub-steps; its trail may have gaps", tick, kSubStepLimit));
+      say(fmt::format("tick {}: a body moves farther than one cell in each of {} sub-steps; its trail may have gaps",
+                      tick, kSubStepLimit));
     note(figures, *result, simulation.state(), tick_ms);
     if (Clock::now() - said > std::chrono::seconds(1) || tick == options.ticks) {
       said = Clock::now();
-      say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, hash {}", tick, options.ticks, tick_ms,
-                      active_cells, simulation.state().tiles.size(), hexText(hash)));
+      say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, hash {}", tick, options.ticks,
+                      tick_ms, active_cells, simulation.state().tiles.size(), hexText(hash)));
     }
   }
   figures.wall_s = millisecondsSince(start) / 1e3;

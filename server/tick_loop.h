@@ -19,12 +19,12 @@ struct LoopOptions {
 struct LoopFigures {
   static constexpr std::size_t kTicksKept = 1 << 16;
 
-  std::vector<double> tick_ms;                                  // commands to delta
+  std::vector<double> tick_ms;  // commands to delta
   std::array<std::vector<double>, kStageCount> stage_ms;
   std::vector<double> active_cells;
-  std::int32_t late_ticks = 0;                                  // that began after their time
+  std::int32_t late_ticks = 0;  // that began after their time
   std::int32_t too_fast_ticks = 0;
-  std::int32_t unbalanced_ticks = 0;                            // whose ledger error was not 0
+  std::int32_t unbalanced_ticks = 0;  // whose ledger error was not 0
   double wall_s = 0;
 };
 

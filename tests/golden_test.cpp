@@ -65,11 +65,15 @@ TEST_P(Golden, HashesAreTheCommittedOnesAndTheGroundGoesToSleep) {
     const std::string hash = hexText(result->update.state_hash);
     seen += std::to_string(tick) + " " + hash + "\n";
     const auto golden = scene.hashes.find(tick);
-    if (first_difference.empty() && (golden == scene.hashes.end() || golden->second != hash)) first_difference = std::to_string(tick);
+    if (first_difference.empty() && (golden == scene.hashes.end() || golden->second != hash))
+      first_difference = std::to_string(tick);
   }
   ASSERT_TRUE(recount(simulation.state()));
-  EXPECT_TRUE(first_difference.empty()) << "the hash moved by tick " << first_difference << "; " << GetParam() << ".txt would now read\n" << seen;
-  if (const char* update = std::getenv("SPOOR_GOLDEN_UPDATE"); update != nullptr) std::ofstream(folder() / (GetParam() + ".txt")) << seen;
+  EXPECT_TRUE(first_difference.empty()) << "the hash moved by tick " << first_difference << "; " << GetParam()
+                                        << ".txt would now read\n"
+                                        << seen;
+  if (const char* update = std::getenv("SPOOR_GOLDEN_UPDATE"); update != nullptr)
+    std::ofstream(folder() / (GetParam() + ".txt")) << seen;
 
   const std::vector<Pose> rest = simulation.state().poses;
   int waited = 0;
@@ -89,7 +93,8 @@ TEST_P(Golden, NeitherThreadsNorKernelsNorSkippingShow) {
   const GoldenScene scene = load(GetParam());
   const BaseTerrain base(scene.pack);
   const Script script(base);
-  std::vector<NativeOptions> variants = {{1, nullptr, false}, {2, nullptr, true}, {3, nullptr, true}, {8, nullptr, true}};
+  std::vector<NativeOptions> variants = {
+      {1, nullptr, false}, {2, nullptr, true}, {3, nullptr, true}, {8, nullptr, true}};
   for (const Kernels* set : availableKernels()) variants.push_back({2, set, true});
   for (const NativeOptions& options : variants) {
     Simulation simulation(base, scene.id, makeNativeBackend(options));
@@ -98,7 +103,8 @@ TEST_P(Golden, NeitherThreadsNorKernelsNorSkippingShow) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(sceneNames()), [](const auto& scene) { return scene.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(sceneNames()),
+                         [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace spoor

@@ -28,7 +28,8 @@ TEST(Rules, GlslGivesWhatCppGives) {
   checkGl("rules_probe.comp");
   for (int seed = 0; seed < kSeeds; ++seed)
     for (int which = 0; which < rules::kProbeCount; ++which)
-      ASSERT_EQ(seen[std::size_t(seed * rules::kProbeCount + which)], rules::probeRule(which, seed)) << "rule " << which << ", seed " << seed;
+      ASSERT_EQ(seen[std::size_t(seed * rules::kProbeCount + which)], rules::probeRule(which, seed))
+          << "rule " << which << ", seed " << seed;
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ RULE RasterPoint drawnPoint(int seed, int i, int reach) {
 
 RULE int probeTriangle(int seed) {
   int reach = 1 << drawn(seed, 20, 6, 18);
-  RasterTriangle t = rasterTriangle(drawnPoint(seed, 21, reach), drawnPoint(seed, 24, reach), drawnPoint(seed, 27, reach));
+  RasterTriangle t =
+      rasterTriangle(drawnPoint(seed, 21, reach), drawnPoint(seed, 24, reach), drawnPoint(seed, 27, reach));
   int sum = foldedWide(foldedWide(folded(folded(seed, t.step), t.step_fraction), t.slope_x), t.slope_y);
   if (wideZero(t.area)) return sum;
   RasterSpan whole;
@@ -59,7 +60,8 @@ RULE int probeTriangle(int seed) {
   sum = folded(folded(sum, span.begin), span.end);
   if (span.end <= span.begin) return sum;
   int first = triangleHeight(t, span.begin, row);
-  return folded(folded(sum, first), triangleHeightAlong(first, t.step, t.step_fraction, span.end - span.begin - 1, t.lowest, t.highest));
+  return folded(folded(sum, first),
+                triangleHeightAlong(first, t.step, t.step_fraction, span.end - span.begin - 1, t.lowest, t.highest));
 }
 
 RULE int probeEdge(int seed) {
@@ -73,7 +75,8 @@ RULE int probeEdge(int seed) {
 /// Result number `which` (0 .. kProbeCount - 1) for a seed.
 RULE int probeRule(int which, int seed) {
   int height_a = drawn(seed, 60, -kHeightLimit, kHeightLimit);
-  int height_b = (seed & 1) != 0 ? drawn(seed, 61, -kHeightLimit, kHeightLimit) : height_a + drawn(seed, 61, -2000, 2000);
+  int height_b =
+      (seed & 1) != 0 ? drawn(seed, 61, -kHeightLimit, kHeightLimit) : height_a + drawn(seed, 61, -2000, 2000);
   height_b = clampInt(height_b, -kHeightLimit, kHeightLimit);
   int small = drawn(seed, 62, 0, 5000);
   int threshold = drawn(seed, 63, 1, 2000);
@@ -82,11 +85,16 @@ RULE int probeRule(int which, int seed) {
   if (which == 2) return probeEdge(seed);
   if (which == 3) return int(cellMixLow(cellKey(height_a, height_b, seed & 3), small));
   if (which == 4) return int(cellMixHigh(cellKey(height_a, height_b, seed & 3), small));
-  if (which == 5) return pairFlow(height_a, height_b, threshold, small, drawn(seed, 64, 0, 5000), drawn(seed, 65, 0, kHeightLimit), drawn(seed, 66, 0, 500));
+  if (which == 5)
+    return pairFlow(height_a, height_b, threshold, small, drawn(seed, 64, 0, 5000), drawn(seed, 65, 0, kHeightLimit),
+                    drawn(seed, 66, 0, 500));
   if (which == 6) return roomBeneath(height_a, height_b, threshold);
   if (which == 7) return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b, threshold);
-  if (which == 8) return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000), drawn(seed, 70, -3000, 3000));
-  if (which == 9) return nearestBefore(small, threshold, threshold, drawn(seed, 71, 0, 40), drawn(seed, 72, 0, 40), small) ? 1 : 0;
+  if (which == 8)
+    return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000),
+                         drawn(seed, 70, -3000, 3000));
+  if (which == 9)
+    return nearestBefore(small, threshold, threshold, drawn(seed, 71, 0, 40), drawn(seed, 72, 0, 40), small) ? 1 : 0;
   int request = drawn(seed, 73, 1, kHeightLimit);
   return grantedShare(request, drawn(seed, 74, 0, kHeightLimit), wideAdd(wideFrom(request), wideMul(small, threshold)));
 }

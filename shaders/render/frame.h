@@ -21,13 +21,13 @@ RENDER_CONST kFinePatchSamples = 64;    // side of a drawn patch of level 0
 RENDER_CONST kCoarsePatchSamples = 16;  // side of a drawn patch of the other levels
 RENDER_CONST kFineMorphSamples = 192;   // width of the band in which a level turns into the next
 RENDER_CONST kCoarseMorphSamples = 80;
-RENDER_CONST kMorphRimSamples = 16;     // the rim of a window that shows the next level only: wider than kShadowSteps
-RENDER_CONST kShadowSteps = 12;         // samples marched towards the sun, in each level
-RENDER_CONST kOcclusionReach = 6;       // samples looked at around a sample for the sky's light
+RENDER_CONST kMorphRimSamples = 16;  // the rim of a window that shows the next level only: wider than kShadowSteps
+RENDER_CONST kShadowSteps = 12;      // samples marched towards the sun, in each level
+RENDER_CONST kOcclusionReach = 6;    // samples looked at around a sample for the sky's light
 
 // Patch flags, one bit an edge in the order west, south, east, north.
-RENDER_CONST kRimEdges = 1;             // << edge: the edge lies on the window's border
-RENDER_CONST kHoleEdges = 16;           // << edge: the edge borders on the next finer window
+RENDER_CONST kRimEdges = 1;    // << edge: the edge lies on the window's border
+RENDER_CONST kHoleEdges = 16;  // << edge: the edge borders on the next finer window
 
 RENDER_CONST kShadeLit = 0;
 RENDER_CONST kShadeNormals = 1;
@@ -35,16 +35,16 @@ RENDER_CONST kGroundSnow = 0;
 RENDER_CONST kGroundSand = 1;
 
 // Binding points.
-RENDER_CONST kFrameBinding = 0;         // uniform block
-RENDER_CONST kReliefJobBinding = 1;     // uniform block
-RENDER_CONST kFineHeightUnit = 0;       // texture units
+RENDER_CONST kFrameBinding = 0;      // uniform block
+RENDER_CONST kReliefJobBinding = 1;  // uniform block
+RENDER_CONST kFineHeightUnit = 0;    // texture units
 RENDER_CONST kCoarseHeightUnit = 1;
 RENDER_CONST kFineReliefUnit = 2;
 RENDER_CONST kCoarseReliefUnit = 3;
 RENDER_CONST kBodyShadowUnit = 4;
 RENDER_CONST kColourUnit = 5;
 RENDER_CONST kDepthUnit = 6;
-RENDER_CONST kReliefImage = 0;          // image unit
+RENDER_CONST kReliefImage = 0;  // image unit
 
 /// Where a level's window lies in the world and in its texture, which is a torus.
 struct LevelWindow {

@@ -48,7 +48,10 @@ RULE int maxInt(int a, int b) { return a > b ? a : b; }
 #else
 
 // A signed 64-bit value, two's complement. Only the wide* helpers touch it.
-struct wide { uint low; uint high; };
+struct wide {
+  uint low;
+  uint high;
+};
 
 wide wideFrom(int a) { return wide(uint(a), a < 0 ? 0xffffffffu : 0u); }
 // By halves: umulExtended and imulExtended lose the high word in Mesa 22.3 where both factors are constants.
@@ -91,8 +94,10 @@ wide wideFloorDiv(wide a, wide b) {
     wide less = wideSub(part, b);
     if (!wideNegative(less)) {
       part = less;
-      if (bit >= 32) quotient.high |= 1u << uint(bit - 32);
-      else quotient.low |= 1u << uint(bit);
+      if (bit >= 32)
+        quotient.high |= 1u << uint(bit - 32);
+      else
+        quotient.low |= 1u << uint(bit);
     }
   }
   if (!negative) return quotient;

@@ -5,15 +5,15 @@
 
 SPOOR_RULES_BEGIN
 
-RULE_CONST kTileSize = 64;                   // cells along a tile's side
+RULE_CONST kTileSize = 64;  // cells along a tile's side
 RULE_CONST kTileCells = kTileSize * kTileSize;
-RULE_CONST kUnitsPerMetre = 10000;           // height units (0.1 mm); Persson's heightmapScale
-RULE_CONST kHeightLimit = (1 << 30) - 1;     // heights lie within +-kHeightLimit, so differences never overflow
-RULE_CONST kNoUnderside = kHeightLimit;      // no body over this cell: the room above it ends at the height limit
-RULE_CONST kSubcells = 256;                  // raster positions per cell side
+RULE_CONST kUnitsPerMetre = 10000;        // height units (0.1 mm); Persson's heightmapScale
+RULE_CONST kHeightLimit = (1 << 30) - 1;  // heights lie within +-kHeightLimit, so differences never overflow
+RULE_CONST kNoUnderside = kHeightLimit;   // no body over this cell: the room above it ends at the height limit
+RULE_CONST kSubcells = 256;               // raster positions per cell side
 
-RULE_CONST kFree = -1;                       // overlap of a cell that can receive soil (the thesis's seed)
-RULE_CONST kObstacle = 0;                    // overlap of a cell just under, or inside, a body; > 0: penetrating
+RULE_CONST kFree = -1;     // overlap of a cell that can receive soil (the thesis's seed)
+RULE_CONST kObstacle = 0;  // overlap of a cell just under, or inside, a body; > 0: penetrating
 RULE_CONST kNoTarget = -1;
 
 SPOOR_RULES_END

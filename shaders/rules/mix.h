@@ -17,7 +17,9 @@ RULE uint mix32(uint v) {
 }
 
 /// Where a cell lies and which plane it is, ready to be combined with its value. Unsigned: wraps.
-RULE uint cellKey(int x, int y, int plane) { return mix32(uint(x) * 0x9e3779b1u + mix32(uint(y) * 0x85ebca77u + uint(plane))); }
+RULE uint cellKey(int x, int y, int plane) {
+  return mix32(uint(x) * 0x9e3779b1u + mix32(uint(y) * 0x85ebca77u + uint(plane)));
+}
 
 /// The low and high lane of a cell's hash. Added up over cells as (high << 32) + low with 64-bit wrap-around.
 RULE uint cellMixLow(uint key, int value) { return mix32(key ^ uint(value)); }

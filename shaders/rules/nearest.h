@@ -1,8 +1,8 @@
 // Stage nearest: the exact nearest free cell in Euclidean distance, with one total order for ties.
-// Order: smaller squared distance, then smaller y, then smaller x of the free cell. The column pass keeps, per cell, the
-// nearest free cell of its own column (tie: smaller y); the row pass picks the best column. Both use this order, so the
-// two passes find the same cell as a search over all cells (checked against that search in the tests).
-// Source: Meijster et al. 2000 (lower envelope of a row); ties are ours.
+// Order: smaller squared distance, then smaller y, then smaller x of the free cell. The column pass keeps, per cell,
+// the nearest free cell of its own column (tie: smaller y); the row pass picks the best column. Both use this order, so
+// the two passes find the same cell as a search over all cells (checked against that search in the tests). Source:
+// Meijster et al. 2000 (lower envelope of a row); ties are ours.
 #ifndef SPOOR_RULES_NEAREST_H
 #define SPOOR_RULES_NEAREST_H
 #include "limits.h"

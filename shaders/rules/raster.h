@@ -14,22 +14,35 @@ SPOOR_RULES_BEGIN
 RULE_CONST kRasterSpanCells = 4096;
 RULE_CONST kRasterHeightSpan = 1 << 20;
 
-struct RasterPoint { int x; int y; int z; };
+struct RasterPoint {
+  int x;
+  int y;
+  int z;
+};
 
 /// A triangle with its plane, wound so that its area is positive. area: twice the area, subcells^2.
 struct RasterTriangle {
-  RasterPoint a; RasterPoint b; RasterPoint c;
-  wide area; wide slope_x; wide slope_y;  // height = a.z + (slope_x * (x - a.x) + slope_y * (y - a.y)) / area
-  int step; int step_fraction;            // height per cell along x: whole units, and 1/65536 units
-  int lowest; int highest;
+  RasterPoint a;
+  RasterPoint b;
+  RasterPoint c;
+  wide area;
+  wide slope_x;
+  wide slope_y;  // height = a.z + (slope_x * (x - a.x) + slope_y * (y - a.y)) / area
+  int step;
+  int step_fraction;  // height per cell along x: whole units, and 1/65536 units
+  int lowest;
+  int highest;
 };
 
 RULE RasterTriangle rasterTriangle(RasterPoint a, RasterPoint b, RasterPoint c) {
   RasterTriangle t;
   wide area = wideSub(wideMul(b.x - a.x, c.y - a.y), wideMul(b.y - a.y, c.x - a.x));
-  t.a = a; t.b = b; t.c = c;
+  t.a = a;
+  t.b = b;
+  t.c = c;
   if (wideNegative(area)) {
-    t.b = c; t.c = b;
+    t.b = c;
+    t.c = b;
     area = wideSub(wideFrom(0), area);
   }
   t.area = area;
@@ -37,7 +50,8 @@ RULE RasterTriangle rasterTriangle(RasterPoint a, RasterPoint b, RasterPoint c) 
   t.highest = maxInt(a.z, maxInt(b.z, c.z));
   t.slope_x = wideSub(wideMul(t.b.z - a.z, t.c.y - a.y), wideMul(t.c.z - a.z, t.b.y - a.y));
   t.slope_y = wideSub(wideMul(t.c.z - a.z, t.b.x - a.x), wideMul(t.b.z - a.z, t.c.x - a.x));
-  t.step = 0; t.step_fraction = 0;
+  t.step = 0;
+  t.step_fraction = 0;
   if (!wideZero(area)) {
     wide per_cell = wideTimes(t.slope_x, kSubcells);
     // A face so steep that this clamps has at most one cell centre per row, where the step is not used.
@@ -52,7 +66,10 @@ RULE RasterTriangle rasterTriangle(RasterPoint a, RasterPoint b, RasterPoint c) 
 }
 
 /// A range of cells [begin, end); empty where end <= begin.
-struct RasterSpan { int begin; int end; };
+struct RasterSpan {
+  int begin;
+  int end;
+};
 
 /// The cells of a row whose centres lie on the inner side of the edge p -> q, out of those of `span`.
 RULE RasterSpan clipToEdge(RasterPoint p, RasterPoint q, int row, RasterSpan span) {
@@ -93,7 +110,15 @@ RULE int triangleHeightAlong(int first, int step, int step_fraction, int cells, 
 }
 
 /// An edge seen along its longer horizontal axis u (u0 <= u1); v is the other one.
-struct RasterEdge { int u0; int v0; int z0; int u1; int v1; int z1; int along_y; };
+struct RasterEdge {
+  int u0;
+  int v0;
+  int z0;
+  int u1;
+  int v1;
+  int z1;
+  int along_y;
+};
 
 RULE RasterEdge rasterEdge(RasterPoint a, RasterPoint b) {
   int length_x = maxInt(a.x - b.x, b.x - a.x);
@@ -106,14 +131,21 @@ RULE RasterEdge rasterEdge(RasterPoint a, RasterPoint b) {
   int vb = e.along_y != 0 ? b.x : b.y;
   // A total order of the ends, so that an edge covers the same cells whichever way it is listed.
   bool swap = ub < ua || (ub == ua && (vb < va || (vb == va && b.z < a.z)));
-  e.u0 = swap ? ub : ua; e.u1 = swap ? ua : ub;
-  e.v0 = swap ? vb : va; e.v1 = swap ? va : vb;
-  e.z0 = swap ? b.z : a.z; e.z1 = swap ? a.z : b.z;
+  e.u0 = swap ? ub : ua;
+  e.u1 = swap ? ua : ub;
+  e.v0 = swap ? vb : va;
+  e.v1 = swap ? va : vb;
+  e.z0 = swap ? b.z : a.z;
+  e.z1 = swap ? a.z : b.z;
   return e;
 }
 
 /// What an edge covers in one column of cells along u: cells first..last along v, and its lowest height there.
-struct EdgeColumn { int first; int last; int height; };
+struct EdgeColumn {
+  int first;
+  int last;
+  int height;
+};
 
 RULE int alongEdge(int start, int end, int from, int at, int to) {
   if (to == from) return minInt(start, end);

@@ -7,7 +7,8 @@
 #ifdef SPOOR_NO_ASSERT
 #define SPOOR_ASSERT(condition) ((void)0)
 #else
-#define SPOOR_ASSERT(condition)                                                                  \
-  ((condition) ? (void)0                                                                         \
-               : (std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition), std::abort()))
+#define SPOOR_ASSERT(condition) \
+  ((condition)                  \
+       ? (void)0                \
+       : (std::fprintf(stderr, "%s:%d: assertion failed: %s\n", __FILE__, __LINE__, #condition), std::abort()))
 #endif

@@ -57,7 +57,8 @@ int32_t highest(const int32_t* cells, int n) {
 
 void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
   for (int i = 0; i < n; ++i)
-    underside[i] = rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
+    underside[i] =
+        rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
 }
 
 int overlap(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
@@ -96,21 +97,22 @@ inline bool exchange(int32_t& a, int32_t& b, int bedrock_a, int bedrock_b, int r
   return flow != 0;
 }
 
-bool exchangeRows(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b, int n,
-                  int threshold) {
+bool exchangeRows(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b,
+                  int n, int threshold) {
   int moved = 0;
   for (int i = 0; i < n; ++i)
     moved |= exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::kHeightLimit, rules::kHeightLimit, threshold);
   return moved != 0;
 }
 
-bool exchangeRowsBeneath(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b,
-                         const int32_t* underside_a, const int32_t* underside_b, int n, int threshold,
-                         int obstacle_threshold) {
+bool exchangeRowsBeneath(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a,
+                         const int32_t* bedrock_b, const int32_t* underside_a, const int32_t* underside_b, int n,
+                         int threshold, int obstacle_threshold) {
   int moved = 0;
   for (int i = 0; i < n; ++i)
-    moved |= exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::roomBeneath(a[i], underside_a[i], obstacle_threshold),
-                      rules::roomBeneath(b[i], underside_b[i], obstacle_threshold), threshold);
+    moved |=
+        exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::roomBeneath(a[i], underside_a[i], obstacle_threshold),
+                 rules::roomBeneath(b[i], underside_b[i], obstacle_threshold), threshold);
   return moved != 0;
 }
 
@@ -155,9 +157,18 @@ bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, co
 #define SPOOR_JOIN(a, b) SPOOR_JOIN2(a, b)
 
 extern const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME);
-const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {
-    SPOOR_TEXT(SPOOR_KERNELS_NAME), hashTile, sum, lowest, highest, lowerAlong, overlap,
-    carryFree,                      mergeFree,    exchangeRows,        exchangeRowsBeneath, exchangeWithin,
-    exchangeWithinBeneath};
+const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERNELS_NAME),
+                                                           hashTile,
+                                                           sum,
+                                                           lowest,
+                                                           highest,
+                                                           lowerAlong,
+                                                           overlap,
+                                                           carryFree,
+                                                           mergeFree,
+                                                           exchangeRows,
+                                                           exchangeRowsBeneath,
+                                                           exchangeWithin,
+                                                           exchangeWithinBeneath};
 
 }  // namespace spoor

@@ -47,17 +47,17 @@ void Options::add(std::string name, std::string unit, std::string help, std::int
                       [=](const auto& text) { return parseNumber(text, lowest, highest, target); }});
 }
 
-void Options::add(std::string name, std::string unit, std::string help, double* target, double lowest,
-                  double highest) {
+void Options::add(std::string name, std::string unit, std::string help, double* target, double lowest, double highest) {
   entries_.push_back({std::move(name), std::move(unit), std::move(help), numberText(*target), true,
                       [=](const auto& text) { return parseNumber(text, lowest, highest, target); }});
 }
 
 void Options::add(std::string name, std::string unit, std::string help, std::vector<std::string>* target) {
-  entries_.push_back({std::move(name), std::move(unit), std::move(help) + " (may be repeated)", "", true, [target](const auto& text) {
-                        target->push_back(text);
-                        return Status{};
-                      }});
+  entries_.push_back(
+      {std::move(name), std::move(unit), std::move(help) + " (may be repeated)", "", true, [target](const auto& text) {
+         target->push_back(text);
+         return Status{};
+       }});
 }
 
 void Options::addFlag(std::string name, std::string help, bool* target) {
@@ -78,7 +78,8 @@ void Options::parseOrExit(int argc, char** argv) const {
   const int help_code = int(entries_.size());
   std::vector<option> table;
   for (std::size_t i = 0; i < entries_.size(); ++i)
-    table.push_back({entries_[i].name.c_str(), entries_[i].takes_value ? required_argument : no_argument, nullptr, int(i)});
+    table.push_back(
+        {entries_[i].name.c_str(), entries_[i].takes_value ? required_argument : no_argument, nullptr, int(i)});
   table.push_back({"help", no_argument, nullptr, help_code});
   table.push_back({});
   const auto refuse = [&](const std::string& why) {

@@ -54,7 +54,8 @@ void ThreadPool::serve(int thread) {
 void ThreadPool::work(int thread) {
   std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
   while (std::uint32_t(ticket) > 0) {
-    if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel, std::memory_order_acquire)) continue;
+    if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel, std::memory_order_acquire))
+      continue;
     call_(context_, count_ - int(std::uint32_t(ticket)), thread);
     if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_one();
     ticket = ticket_.load(std::memory_order_acquire);

@@ -27,7 +27,9 @@ class ThreadPool {
       for (int i = 0; i < count; ++i) body(i, 0);
       return;
     }
-    call_ = [](void* context, int index, int thread) { (*static_cast<std::remove_reference_t<Body>*>(context))(index, thread); };
+    call_ = [](void* context, int index, int thread) {
+      (*static_cast<std::remove_reference_t<Body>*>(context))(index, thread);
+    };
     run(count, &body);
   }
 

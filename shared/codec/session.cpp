@@ -28,7 +28,8 @@ std::vector<std::uint8_t> recordBytes(std::uint8_t kind, std::span<const std::ui
 
 template <typename LedgerType, typename Visit>
 void visitLedger(LedgerType& ledger, Visit visit) {
-  for (auto* value : {&ledger.initial, &ledger.ground, &ledger.compacted, &ledger.craters, &ledger.events}) visit(*value);
+  for (auto* value : {&ledger.initial, &ledger.ground, &ledger.compacted, &ledger.craters, &ledger.events})
+    visit(*value);
 }
 
 std::vector<std::uint8_t> tickBytes(const TickRecord& record) {
@@ -43,7 +44,8 @@ std::vector<std::uint8_t> tickBytes(const TickRecord& record) {
 
 class FileWriter final : public SessionWriter {
  public:
-  FileWriter(std::ofstream file, std::string path) : file_(std::move(file)), path_(std::move(path)), thread_([this] { serve(); }) {}
+  FileWriter(std::ofstream file, std::string path)
+      : file_(std::move(file)), path_(std::move(path)), thread_([this] { serve(); }) {}
   ~FileWriter() override { stop(); }
 
   void append(TickRecord record) override {
@@ -100,7 +102,8 @@ class FileWriter final : public SessionWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<SessionWriter>> SessionWriter::create(const std::string& path, std::span<const std::uint8_t> encoded_pack) {
+Result<std::unique_ptr<SessionWriter>> SessionWriter::create(const std::string& path,
+                                                             std::span<const std::uint8_t> encoded_pack) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   ByteWriter header;
   header.put(kMagic);
@@ -121,7 +124,8 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::string& pa
   reader->file_.read(reinterpret_cast<char*>(header), sizeof header);
   if (!reader->file_ || header[0] != kMagic) return Error{path + ": not a Spoor session file"};
   if (header[1] != kVersion)
-    return Error{path + ": session format " + std::to_string(header[1]) + ", this program reads " + std::to_string(kVersion)};
+    return Error{path + ": session format " + std::to_string(header[1]) + ", this program reads " +
+                 std::to_string(kVersion)};
   reader->position_ = sizeof header;
   auto record = reader->nextRecord();
   if (!record) return Error{record.error()};
@@ -179,7 +183,8 @@ Result<std::optional<TickRecord>> SessionReader::next() {
   if (count != pack_.bodies.size() || reader.left() != count * kPoseBytes)
     return Error{where + "tick record does not fit the pack's bodies"};
   for (std::size_t i = 0; i < count; ++i) tick.poses.push_back(getPose(reader));
-  if (tick.tick != last_tick_ + 1) return Error{where + "tick " + std::to_string(tick.tick) + " follows tick " + std::to_string(last_tick_)};
+  if (tick.tick != last_tick_ + 1)
+    return Error{where + "tick " + std::to_string(tick.tick) + " follows tick " + std::to_string(last_tick_)};
   last_tick_ = tick.tick;
   return std::optional<TickRecord>(std::move(tick));
 }

@@ -28,7 +28,8 @@ struct TickRecord {
 class SessionWriter {
  public:
   /// Creates the file (an existing one is replaced) and writes the pack. Errors: it cannot be created.
-  static Result<std::unique_ptr<SessionWriter>> create(const std::string& path, std::span<const std::uint8_t> encoded_pack);
+  static Result<std::unique_ptr<SessionWriter>> create(const std::string& path,
+                                                       std::span<const std::uint8_t> encoded_pack);
   virtual ~SessionWriter() = default;
 
   virtual void append(TickRecord record) = 0;

@@ -28,7 +28,8 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
   if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
-    return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) + " bodies"};
+    return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) +
+                 " bodies"};
   for (std::size_t i = 0; i < count; ++i) state.poses.push_back(getPose(reader));
   for (std::size_t i = 0; i < count; ++i) state.previous_poses.push_back(getPose(reader));
   for (const auto* poses : {&state.poses, &state.previous_poses})

@@ -93,7 +93,8 @@ std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes) {
     writer.put(change.wake_mask);
     writer.put(change.hash);
     writer.put(std::uint8_t(change.difference.empty() ? 0 : 1 << int(Plane::height)));
-    for (const std::uint8_t value : {change.x, change.y, change.width, change.height, byte_counts.back()}) writer.put(value);
+    for (const std::uint8_t value : {change.x, change.y, change.width, change.height, byte_counts.back()})
+      writer.put(value);
   }
   for (int byte = 0; byte < 4; ++byte)
     for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -106,10 +107,12 @@ std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes) {
   return std::move(writer.bytes);
 }
 
-Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack, std::size_t tile_limit) {
+Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack,
+                                            std::size_t tile_limit) {
   ByteReader reader(bytes);
   const std::size_t count = reader.get<std::uint32_t>();
-  if (count > tile_limit) return Error{"tile changes: " + std::to_string(count) + " tiles, the limit is " + std::to_string(tile_limit)};
+  if (count > tile_limit)
+    return Error{"tile changes: " + std::to_string(count) + " tiles, the limit is " + std::to_string(tile_limit)};
   if (count > reader.left() / kEntryBytes) return Error{"tile changes: truncated"};
   const TileCoordinate extent = tileExtent(pack);
   std::vector<Entry> entries(count);
@@ -131,7 +134,8 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
     plane_bytes += std::size_t(change.width) * change.height * entry.byte_count;
   }
   if (reader.failed() || plane_bytes != reader.left())
-    return Error{"tile changes: " + std::to_string(reader.left()) + " bytes of differences, not " + std::to_string(plane_bytes)};
+    return Error{"tile changes: " + std::to_string(reader.left()) + " bytes of differences, not " +
+                 std::to_string(plane_bytes)};
   std::vector<TileChange> changes;
   changes.reserve(count);
   for (Entry& entry : entries) entry.change.difference.resize(std::size_t(entry.change.width) * entry.change.height);
@@ -165,8 +169,8 @@ Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileC
   prepared.live = state.tiles.find(change.at);
   const std::int32_t held = prepared.live != nullptr ? prepared.live->version_tick : kDormantVersion;
   if (held != change.base_version)
-    return Error{nameOf(change.at) + ": change is against version " + std::to_string(change.base_version) + ", held is " +
-                 std::to_string(held)};
+    return Error{nameOf(change.at) + ": change is against version " + std::to_string(change.base_version) +
+                 ", held is " + std::to_string(held)};
   if (prepared.live == nullptr) prepared.fresh = makeTile(change.at, base, change.new_version);
   Tile& tile = prepared.live != nullptr ? *prepared.live : *prepared.fresh;
   prepared.height = std::make_unique<PlaneCells>(tile.height());

@@ -9,8 +9,8 @@
 
 namespace spoor {
 
-// A few bytes of a change can make a whole tile live (48 KiB), so changes are bounded in number: those of a tick by what
-// a tick may simulate, those of a snapshot by what a client may hold.
+// A few bytes of a change can make a whole tile live (48 KiB), so changes are bounded in number: those of a tick by
+// what a tick may simulate, those of a snapshot by what a client may hold.
 inline constexpr std::size_t kTickTilesLimit = 1 << 14;
 inline constexpr std::size_t kSnapshotTilesLimit = 1 << 17;
 
@@ -23,7 +23,7 @@ struct TileChange {
   std::int32_t base_version = kDormantVersion;  // version the difference is against; kDormantVersion: the base terrain
   std::int32_t new_version = 0;
   WakeMask wake_mask = 0;
-  std::uint64_t hash = 0;                       // the tile's hash afterwards
+  std::uint64_t hash = 0;  // the tile's hash afterwards
   // The box of changed cells within the tile, and new - old height in it, row-major. width 0: no cell changed.
   std::uint8_t x = 0, y = 0, width = 0, height = 0;
   std::vector<std::int32_t> difference;
@@ -35,7 +35,8 @@ TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t
 /// Canonical bytes of changes, meant to be compressed afterwards: zigzag differences split into byte planes.
 std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes);
 
-/// Safe on untrusted bytes. Checks structure and ranges; tiles must lie in the pack's world, in (y, x) order, once each.
+/// Safe on untrusted bytes. Checks structure and ranges; tiles must lie in the pack's world, in (y, x) order, once
+/// each.
 Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes, const ScenePack& pack,
                                             std::size_t tile_limit = kTickTilesLimit);
 
@@ -47,8 +48,8 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
 struct TickUpdate {
   std::int32_t tick = 0;
   std::uint64_t state_hash = 0;
-  std::vector<Pose> poses;              // of every body after this tick
-  std::vector<std::uint8_t> tiles;      // encodeTiles
+  std::vector<Pose> poses;          // of every body after this tick
+  std::vector<std::uint8_t> tiles;  // encodeTiles
 };
 
 /// Takes a state from tick - 1 to tick. Safe on untrusted content. On an error the state is untouched, but where only

@@ -21,7 +21,8 @@ int subStepsFor(std::int32_t cell_q, std::int32_t reach_q, const Pose& from, con
   constexpr std::int64_t kRadiansPerTurnQ32 = 411775;  // 2 pi / 65536
   const auto angle = [](Turn a, Turn b) { return std::abs(std::int64_t(std::int16_t(std::uint16_t(b - a)))); };
   const std::int64_t turned = angle(from.yaw, to.yaw) + angle(from.pitch, to.pitch) + angle(from.roll, to.roll);
-  const std::int64_t shift = std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
+  const std::int64_t shift =
+      std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
   const std::int64_t farthest = shift + ((reach_q * turned * kRadiansPerTurnQ32) >> 32);
   return int(std::clamp<std::int64_t>(-floorDiv(-farthest, cell_q), 1, kSubStepLimit + 1));
 }
@@ -70,9 +71,9 @@ Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
     }
     const std::int64_t width = joined.box.x1 - joined.box.x0, height = joined.box.y1 - joined.box.y0;
     if (width > kDomainSideLimit || height > kDomainSideLimit || width * height > kDomainCellsLimit)
-      return Error{std::to_string(joined.bodies.size()) + " touching bodies make a search domain of " + std::to_string(width) + " x " +
-                   std::to_string(height) + " cells, the limit is " + std::to_string(kDomainCellsLimit) + " cells, " +
-                   std::to_string(kDomainSideLimit) + " a side"};
+      return Error{std::to_string(joined.bodies.size()) + " touching bodies make a search domain of " +
+                   std::to_string(width) + " x " + std::to_string(height) + " cells, the limit is " +
+                   std::to_string(kDomainCellsLimit) + " cells, " + std::to_string(kDomainSideLimit) + " a side"};
     domains.push_back(std::move(joined));
   }
   std::ranges::sort(domains, [](const Domain& a, const Domain& b) {
@@ -84,7 +85,8 @@ Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
 /// A tick in the making.
 class Planner {
  public:
-  Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state, std::span<const Pose> poses)
+  Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
+          std::span<const Pose> poses)
       : pack_(pack), reach_q_(reach_q), state_(state), poses_(poses), placed_(poses.size()) {}
 
   Result<TickPlan> plan() {
@@ -94,7 +96,8 @@ class Planner {
     placeMoving(plan);
     if (tiles_.empty()) return plan;
     std::vector<std::vector<Domain>> domains;
-    // A joined domain may reach tiles that none of its bodies does, and there wake bodies at rest, whose domains join ...
+    // A joined domain may reach tiles that none of its bodies does, and there wake bodies at rest, whose domains join
+    // ...
     do {
       auto joined = joinAllSteps();
       if (!joined) return Error{joined.error()};
@@ -103,7 +106,8 @@ class Planner {
     if (tiles_.size() > kTickTilesLimit)
       return Error{std::to_string(tiles_.size()) + " active tiles, the limit is " + std::to_string(kTickTilesLimit)};
     plan.active.assign(tiles_.begin(), tiles_.end());
-    for (int step = 0; step < step_count_; ++step) plan.sub_steps.push_back(takeSubStep(step, std::move(domains[std::size_t(step)])));
+    for (int step = 0; step < step_count_; ++step)
+      plan.sub_steps.push_back(takeSubStep(step, std::move(domains[std::size_t(step)])));
     return plan;
   }
 
@@ -113,7 +117,8 @@ class Planner {
 
   void placeMoving(TickPlan& plan) {
     for (std::size_t i = 0; i < poses_.size(); ++i)
-      if (moves(i)) step_count_ = std::max(step_count_, subStepsFor(pack_.cell_q, reach_q_[i], state_.poses[i], poses_[i]));
+      if (moves(i))
+        step_count_ = std::max(step_count_, subStepsFor(pack_.cell_q, reach_q_[i], state_.poses[i], poses_[i]));
     plan.too_fast = step_count_ > kSubStepLimit;
     step_count_ = std::min(step_count_, kSubStepLimit);
     for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -148,7 +153,8 @@ class Planner {
     const Pose& pose = poses_[body];
     const std::int64_t reach = reach_q_[body] + std::int64_t(2) * pack_.cell_q;
     return {cellOf(pose.x_q - reach, pack_.width_cells), cellOf(pose.y_q - reach, pack_.height_cells),
-            cellOf(pose.x_q + reach + pack_.cell_q, pack_.width_cells), cellOf(pose.y_q + reach + pack_.cell_q, pack_.height_cells)};
+            cellOf(pose.x_q + reach + pack_.cell_q, pack_.width_cells),
+            cellOf(pose.y_q + reach + pack_.cell_q, pack_.height_cells)};
   }
 
   const PlacedBody& placedAt(std::size_t body, int step) const {
@@ -172,9 +178,11 @@ class Planner {
   SubStep takeSubStep(int step, std::vector<Domain> domains) {
     SubStep sub_step;
     for (const std::size_t body : taking_part_)
-      sub_step.bodies.push_back(placed_[body].size() == 1 ? placed_[body].front() : std::move(placed_[body][std::size_t(step)]));
+      sub_step.bodies.push_back(placed_[body].size() == 1 ? placed_[body].front()
+                                                          : std::move(placed_[body][std::size_t(step)]));
     sub_step.domains = std::move(domains);
-    sub_step.sweep_count = (step + 1) * pack_.sweeps_per_tick / step_count_ - step * pack_.sweeps_per_tick / step_count_;
+    sub_step.sweep_count =
+        (step + 1) * pack_.sweeps_per_tick / step_count_ - step * pack_.sweeps_per_tick / step_count_;
     return sub_step;
   }
 

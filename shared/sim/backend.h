@@ -13,12 +13,12 @@ namespace spoor {
 
 /// What stages 4 to 9 did.
 struct TickEffect {
-  std::vector<TileChange> changes;        // in (y, x) order: tiles whose cells or wake mask changed, or that became live
-  std::int64_t active_cells = 0;          // cells of active tiles
-  std::int64_t domain_cells = 0;          // cells of search domains, of all sub-steps
-  std::int64_t penetrating_cells = 0;     // of all sub-steps
-  std::int64_t pairs_visited = 0;         // by the relaxation; a whole sweep visits about four per active cell
-  std::int64_t bytes_moved = 0;           // read and written by the stages, from the counts above; no cache is assumed
+  std::vector<TileChange> changes;     // in (y, x) order: tiles whose cells or wake mask changed, or that became live
+  std::int64_t active_cells = 0;       // cells of active tiles
+  std::int64_t domain_cells = 0;       // cells of search domains, of all sub-steps
+  std::int64_t penetrating_cells = 0;  // of all sub-steps
+  std::int64_t pairs_visited = 0;      // by the relaxation; a whole sweep visits about four per active cell
+  std::int64_t bytes_moved = 0;        // read and written by the stages, from the counts above; no cache is assumed
   StageTimes stage_ms{};
 };
 
@@ -32,9 +32,9 @@ class Backend {
 };
 
 struct NativeOptions {
-  int thread_count = 0;                 // 0: one for each processor
-  const Kernels* kernels = nullptr;     // nullptr: the fastest that this processor runs
-  bool skip_settled = true;             // false: every sweep visits every pair (for measuring; the same bits)
+  int thread_count = 0;              // 0: one for each processor
+  const Kernels* kernels = nullptr;  // nullptr: the fastest that this processor runs
+  bool skip_settled = true;          // false: every sweep visits every pair (for measuring; the same bits)
 };
 std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options = {});
 

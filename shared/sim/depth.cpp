@@ -1,7 +1,8 @@
 // Stage depth: integer rasterisation of undersides.
 //
-// Only the lowest surface over a cell counts, and a minimum does not mind the order: low primitives are drawn first, and
-// one that lies above everything already drawn where it could fall is left out. On a closed mesh that is most of them.
+// Only the lowest surface over a cell counts, and a minimum does not mind the order: low primitives are drawn first,
+// and one that lies above everything already drawn where it could fall is left out. On a closed mesh that is most of
+// them.
 #include <algorithm>
 #include <numeric>
 
@@ -94,7 +95,8 @@ class RowTarget {
     return true;
   }
 
-  void drawTriangle(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c, const PlacedBody& body) {
+  void drawTriangle(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c,
+                    const PlacedBody& body) {
     const CellBox cells = cellsOf(body, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}),
                                   std::max({a.y, b.y, c.y}));
     const std::int32_t lowest = absoluteHeight(std::int64_t(body.z_q) + std::min({a.z, b.z, c.z}));
@@ -109,7 +111,8 @@ class RowTarget {
       if (span.end <= span.begin) continue;
       const int start = rules::triangleHeight(t, span.begin, y - body.origin_y);
       context_.kernels.lowerAlong(cellAt(span.begin + body.origin_x, y), span.end - span.begin,
-                                  absoluteHeight(std::int64_t(body.z_q) + start), t.step, t.step_fraction, lowest, highest);
+                                  absoluteHeight(std::int64_t(body.z_q) + start), t.step, t.step_fraction, lowest,
+                                  highest);
     }
   }
 
@@ -175,7 +178,9 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
     for (int row = 0; row < rules::kTileSize; ++row)
       for (int tile = 0; tile < run.tile_count; ++tile)
         context.area.lowest_underside[run.segment_offset + std::size_t(row * run.tile_count + tile)] =
-            context.kernels.lowest(context.area.underside.data() + run.rowOffset(row) + std::size_t(tile * rules::kTileSize), rules::kTileSize);
+            context.kernels.lowest(
+                context.area.underside.data() + run.rowOffset(row) + std::size_t(tile * rules::kTileSize),
+                rules::kTileSize);
   });
 }
 

@@ -1,8 +1,9 @@
 // Stage displace: all overlapped soil goes to the nearest free cell (Persson 2019, 4.1.4, method 2), as far as it fits.
+#include "shaders/rules/displace.h"
+
 #include <algorithm>
 #include <atomic>
 
-#include "shaders/rules/displace.h"
 #include "shaders/rules/exchange.h"
 #include "shared/sim/native_stages.h"
 
@@ -53,7 +54,8 @@ void takeFromSources(const NativeContext& context, DomainWork& domain, int row) 
       height[i - first] -= domain.overlap[i];
       return 0;
     }
-    const std::int32_t share = rules::grantedShare(domain.overlap[i], room, domain.requested[std::size_t(domain.target[i])]);
+    const std::int32_t share =
+        rules::grantedShare(domain.overlap[i], room, domain.requested[std::size_t(domain.target[i])]);
     height[i - first] -= share;
     return share;
   });
@@ -65,7 +67,8 @@ void giveToTargets(const NativeContext& context, DomainWork& domain, int row, st
     std::int64_t& requested = domain.requested[first + x];
     if (requested == 0) continue;
     std::int64_t& granted = domain.granted[first + x];
-    context.area.height[domain.row_offset[row] + x] += std::int32_t(domain.room[first + x] == DomainWork::kRoomForAll ? requested : granted);
+    context.area.height[domain.row_offset[row] + x] +=
+        std::int32_t(domain.room[first + x] == DomainWork::kRoomForAll ? requested : granted);
     context.area.last_change[context.area.segmentAt(domain.box.x0 + x, domain.box.y0 + row)] = step;
     requested = 0;
     granted = 0;

@@ -27,7 +27,8 @@ bool fetchCells(const WorkArea& area, const Run& run, Tile& tile, PlaneCells& be
   const std::size_t column = std::size_t(tile.at.x - run.first.x) * kSize;
   const auto rowOf = [&](int row) { return area.height.data() + run.rowOffset(row) + column; };
   int row = 0;
-  while (row < kSize && std::memcmp(rowOf(row), tile.height().data() + row * kSize, kSize * sizeof(std::int32_t)) == 0) ++row;
+  while (row < kSize && std::memcmp(rowOf(row), tile.height().data() + row * kSize, kSize * sizeof(std::int32_t)) == 0)
+    ++row;
   if (row == kSize) return false;
   before = tile.height();
   for (; row < kSize; ++row) std::memcpy(tile.height().data() + row * kSize, rowOf(row), kSize * sizeof(std::int32_t));
@@ -50,7 +51,8 @@ std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& pl
   context.pool.forEach(int(area.tiles.size()), [&](int i, int) {
     Tile& tile = *area.tiles[i];
     Outcome& outcome = outcomes[i];
-    const bool is_new = std::binary_search(made_live.begin(), made_live.end(), &tile, [](const Tile* a, const Tile* b) { return a->at < b->at; });
+    const bool is_new = std::binary_search(made_live.begin(), made_live.end(), &tile,
+                                           [](const Tile* a, const Tile* b) { return a->at < b->at; });
     outcome.hash_before = is_new ? 0 : tileStateHash(tile);
     outcome.ground_before = is_new ? 0 : tile.ground;
     const std::int32_t base_version = is_new ? kDormantVersion : tile.version_tick;
@@ -59,7 +61,8 @@ std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& pl
     if (!changed && !is_new && tile.wake_mask == 0) return;
     tile.version_tick = plan.tick;
     if (changed) {
-      tile.hash = context.kernels.hashTile(tile.height().data(), tile.at.x * kSize, tile.at.y * kSize, int(Plane::height));
+      tile.hash =
+          context.kernels.hashTile(tile.height().data(), tile.at.x * kSize, tile.at.y * kSize, int(Plane::height));
       tile.ground = context.kernels.sum(tile.height().data(), rules::kTileCells);
     }
     outcome.change = differenceOf(tile, changed ? before : tile.height(), base_version);

@@ -59,7 +59,8 @@ class NativeBackend final : public Backend {
       runDepth(context, sub_step);
       // Where a body was or is, room beneath it may have changed.
       for (std::size_t i = 0; i < underside_before_.size(); ++i)
-        if (std::min(area_.lowest_underside[i], underside_before_[i]) < rules::kNoUnderside) area_.last_change[i] = step;
+        if (std::min(area_.lowest_underside[i], underside_before_[i]) < rules::kNoUnderside)
+          area_.last_change[i] = step;
     }
     effect.bytes_moved += effect.active_cells * kClearBytes;
     domains_.resize(std::max(domains_.size(), sub_step.domains.size()));
@@ -99,7 +100,9 @@ class NativeBackend final : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options) { return std::make_unique<NativeBackend>(options); }
+std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options) {
+  return std::make_unique<NativeBackend>(options);
+}
 
 Result<std::unique_ptr<Backend>> makeBackend(const std::string& name, const NativeOptions& options) {
   if (name == "native" || name == "auto") return makeNativeBackend(options);

@@ -21,16 +21,16 @@ struct NativeContext {
 /// Planes of one domain, row-major [height * width] of its box, and where its rows lie in the work area.
 struct DomainWork {
   CellBox box;
-  std::vector<std::size_t> row_offset;      // [rows] offset of the row's first cell in the work area's planes
-  std::vector<std::int32_t> overlap;        // see rules/penetration.h
-  std::vector<int> penetrating_in_row;      // [rows]
+  std::vector<std::size_t> row_offset;  // [rows] offset of the row's first cell in the work area's planes
+  std::vector<std::int32_t> overlap;    // see rules/penetration.h
+  std::vector<int> penetrating_in_row;  // [rows]
   int penetrating_count = 0;
-  std::vector<std::int32_t> nearest_row;    // y of the nearest free cell of the same column, relative to the box
-  std::vector<std::int32_t> target;         // index of the nearest free cell in this domain, or kNoTarget
-  std::vector<std::uint8_t> receives;       // [rows] does the row hold a target?
-  std::vector<std::int64_t> requested;      // soil that wants to come to a cell; 0 everywhere between sub-steps
-  std::vector<std::int32_t> room;           // what a cell with requests can take, kRoomForAll where they fit
-  std::vector<std::int64_t> granted;        // what was let in where not all fits; 0 everywhere between sub-steps
+  std::vector<std::int32_t> nearest_row;  // y of the nearest free cell of the same column, relative to the box
+  std::vector<std::int32_t> target;       // index of the nearest free cell in this domain, or kNoTarget
+  std::vector<std::uint8_t> receives;     // [rows] does the row hold a target?
+  std::vector<std::int64_t> requested;    // soil that wants to come to a cell; 0 everywhere between sub-steps
+  std::vector<std::int32_t> room;         // what a cell with requests can take, kRoomForAll where they fit
+  std::vector<std::int64_t> granted;      // what was let in where not all fits; 0 everywhere between sub-steps
 
   static constexpr std::int32_t kRoomForAll = INT32_MAX;
 

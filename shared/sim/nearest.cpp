@@ -1,8 +1,9 @@
 // Stage nearest: the exact nearest free cell of every penetrating one, in two passes.
+#include "shaders/rules/nearest.h"
+
 #include <algorithm>
 #include <atomic>
 
-#include "shaders/rules/nearest.h"
 #include "shared/sim/native_stages.h"
 
 namespace spoor {
@@ -99,8 +100,7 @@ void runNearest(const NativeContext& context, DomainWork& domain) {
   const int task_rows = std::max(1, rowsPerTask(domain.width()) / 4);  // a row costs more here than elsewhere
   context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int thread) {
     for (int y = task * task_rows; y < std::min((task + 1) * task_rows, domain.rows()); ++y)
-      if (domain.penetrating_in_row[y] > 0)
-        envelopes[thread].search(domain, y);
+      if (domain.penetrating_in_row[y] > 0) envelopes[thread].search(domain, y);
   });
 }
 

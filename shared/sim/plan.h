@@ -46,7 +46,7 @@ struct TickPlan {
   std::int32_t tick = 0;
   std::vector<TileCoordinate> active;  // in (y, x) order
   std::vector<SubStep> sub_steps;      // none where nothing is active
-  bool too_fast = false;               // a body moves farther than one cell per sub-step, at the most sub-steps there are
+  bool too_fast = false;  // a body moves farther than one cell per sub-step, at the most sub-steps there are
 };
 
 inline constexpr int kSubStepLimit = 32;

@@ -23,7 +23,10 @@ static_assert(6 * kSweepsAtOnce <= kSize / 2);
 class Relaxation {
  public:
   Relaxation(const NativeContext& context, bool skip_settled)
-      : context_(context), area_(context.area), skip_settled_(skip_settled), progress_(context.area.bands.size() * kSize),
+      : context_(context),
+        area_(context.area),
+        skip_settled_(skip_settled),
+        progress_(context.area.bands.size() * kSize),
         row_change_(progress_.size()) {
     for (std::size_t row = 0; row < row_change_.size(); ++row) row_change_[row] = lastChangeOfRow(int(row));
     // No cell rises above the highest of all, so an underside well above that limits nothing.
@@ -32,7 +35,8 @@ class Relaxation {
       const Run& run = area_.runs[i];
       highest[i] = -rules::kHeightLimit;
       for (int row = 0; row < kSize; ++row)
-        highest[i] = std::max(highest[i], context.kernels.highest(area_.height.data() + run.rowOffset(row), run.width()));
+        highest[i] =
+            std::max(highest[i], context.kernels.highest(area_.height.data() + run.rowOffset(row), run.width()));
     });
     for (const std::int32_t height : highest) highest_ = std::max(highest_, height);
   }
@@ -54,7 +58,8 @@ class Relaxation {
  private:
   /// Is the band after this one its neighbour on the ground?
   bool adjacent(int band) const {
-    return band >= 0 && band + 1 < int(area_.bands.size()) && area_.bands[band + 1].tile_y == area_.bands[band].tile_y + 1;
+    return band >= 0 && band + 1 < int(area_.bands.size()) &&
+           area_.bands[band + 1].tile_y == area_.bands[band].tile_y + 1;
   }
 
   void advanceRows(int begin, int end_row, int end) {
@@ -130,9 +135,11 @@ class Relaxation {
         const std::size_t at = cells + std::size_t(tile * kSize + parity);
         const bool beneath = covered(segment) || (reaches_next && covered(segment + 1));
         const int threshold = context_.pack.slope_threshold_q;
-        const bool moved = beneath ? context_.kernels.exchangeWithinBeneath(&area_.height[at], &area_.bedrock[at], &area_.underside[at],
-                                                                            pairs, threshold, context_.pack.obstacle_threshold_q)
-                                   : context_.kernels.exchangeWithin(&area_.height[at], &area_.bedrock[at], pairs, threshold);
+        const bool moved =
+            beneath
+                ? context_.kernels.exchangeWithinBeneath(&area_.height[at], &area_.bedrock[at], &area_.underside[at],
+                                                         pairs, threshold, context_.pack.obstacle_threshold_q)
+                : context_.kernels.exchangeWithin(&area_.height[at], &area_.bedrock[at], pairs, threshold);
         visited += pairs;
         if (!moved) continue;
         row_change_[row] = area_.last_change[segment] = step;
@@ -184,10 +191,11 @@ class Relaxation {
     const int threshold = shift == 0 ? context_.pack.slope_threshold_q : context_.pack.diagonal_threshold_q;
     const bool beneath = covered(segment_a) || covered(first_b) || covered(last_b);
     const bool moved =
-        beneath ? context_.kernels.exchangeRowsBeneath(&area_.height[a], &area_.height[b], &area_.bedrock[a], &area_.bedrock[b],
-                                                       &area_.underside[a], &area_.underside[b], count, threshold,
-                                                       context_.pack.obstacle_threshold_q)
-                : context_.kernels.exchangeRows(&area_.height[a], &area_.height[b], &area_.bedrock[a], &area_.bedrock[b], count, threshold);
+        beneath ? context_.kernels.exchangeRowsBeneath(&area_.height[a], &area_.height[b], &area_.bedrock[a],
+                                                       &area_.bedrock[b], &area_.underside[a], &area_.underside[b],
+                                                       count, threshold, context_.pack.obstacle_threshold_q)
+                : context_.kernels.exchangeRows(&area_.height[a], &area_.height[b], &area_.bedrock[a],
+                                                &area_.bedrock[b], count, threshold);
     if (moved) {
       area_.last_change[segment_a] = area_.last_change[first_b] = area_.last_change[last_b] = step;
       row_change_[row_a] = row_change_[row_b] = step;

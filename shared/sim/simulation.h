@@ -9,9 +9,9 @@ namespace spoor {
 
 /// What one tick did: for the network, the session file and the table of figures.
 struct TickResult {
-  TickUpdate update;          // as published
-  TickEffect effect;          // its `changes` are those encoded in `update`
-  bool too_fast = false;      // a body moved farther per sub-step than one cell; its trail may have gaps
+  TickUpdate update;      // as published
+  TickEffect effect;      // its `changes` are those encoded in `update`
+  bool too_fast = false;  // a body moved farther per sub-step than one cell; its trail may have gaps
 };
 
 /// A session's state and the rule that carries it from tick to tick. One thread; the backend has its own.

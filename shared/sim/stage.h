@@ -8,8 +8,9 @@ namespace spoor {
 /// The stages of a tick (DESIGN.md), by the names they have everywhere.
 enum class Stage { commands, craters, active, depth, penetration, nearest, displace, relax, hash, delta, publish };
 inline constexpr int kStageCount = 11;
-inline constexpr std::array<const char*, kStageCount> kStageNames = {
-    "commands", "craters", "active", "depth", "penetration", "nearest", "displace", "relax", "hash", "delta", "publish"};
+inline constexpr std::array<const char*, kStageCount> kStageNames = {"commands",    "craters", "active",   "depth",
+                                                                     "penetration", "nearest", "displace", "relax",
+                                                                     "hash",        "delta",   "publish"};
 
 using StageTimes = std::array<double, kStageCount>;  // ms
 

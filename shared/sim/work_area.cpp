@@ -24,7 +24,8 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
 
 }  // namespace
 
-std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool) {
+std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state,
+                                    ThreadPool& pool) {
   const int count = int(plan.active.size());
   tiles.assign(plan.active.size(), nullptr);
   runs.clear();

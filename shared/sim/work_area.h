@@ -34,13 +34,13 @@ struct Band {
 
 /// The active tiles of a tick, gathered for the native backend. A segment is 64 cells of one row: one tile's share.
 struct WorkArea {
-  std::vector<Tile*> tiles;       // active, in (y, x) order
-  std::vector<Run> runs;          // in the same order
-  std::vector<Band> bands;        // in y order
-  std::vector<int> run_of_tile;   // [tiles]
+  std::vector<Tile*> tiles;                              // active, in (y, x) order
+  std::vector<Run> runs;                                 // in the same order
+  std::vector<Band> bands;                               // in y order
+  std::vector<int> run_of_tile;                          // [tiles]
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
-  std::vector<std::int32_t> lowest_underside;  // [segments] smallest underside over the segment's cells
-  std::vector<std::int32_t> last_change;   // [segments] step of the relaxation at which it last changed
+  std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
+  std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
 
   /// Makes the plan's dormant tiles live, and gathers all active ones. Returns the tiles made live.
   std::vector<Tile*> gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool);

@@ -70,9 +70,10 @@ void BaseTerrain::fillArea(std::int32_t x, std::int32_t y, std::int32_t stride, 
       if (cell_x < 0 || cell_x >= pack_->width_cells) {
         out[column] = 0;
       } else {
-        out[column] = pack_->soil_depth_q +
-                      (noise ? noiseHeight(pack_->noise, std::int32_t(cell_x), std::int32_t(cell_y))
-                             : sampleHeight(pack_->samples, cubicAt(std::int32_t(cell_x), pack_->samples.step_x_q32), along_y));
+        out[column] =
+            pack_->soil_depth_q +
+            (noise ? noiseHeight(pack_->noise, std::int32_t(cell_x), std::int32_t(cell_y))
+                   : sampleHeight(pack_->samples, cubicAt(std::int32_t(cell_x), pack_->samples.step_x_q32), along_y));
       }
     }
   }

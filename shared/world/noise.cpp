@@ -14,14 +14,22 @@ std::int64_t gradientDot(std::uint64_t seed, std::int64_t lattice_x, std::int64_
   constexpr std::int64_t kDiagonal = 741455;  // 2^20 / sqrt 2
   const std::uint64_t hash = mix64(mix64(seed ^ std::uint64_t(lattice_x)) + std::uint64_t(lattice_y));
   switch (hash >> 61) {
-    case 0: return dx;
-    case 1: return -dx;
-    case 2: return dy;
-    case 3: return -dy;
-    case 4: return ((dx + dy) * kDiagonal) >> kFractionBits;
-    case 5: return ((dx - dy) * kDiagonal) >> kFractionBits;
-    case 6: return ((dy - dx) * kDiagonal) >> kFractionBits;
-    default: return ((-dx - dy) * kDiagonal) >> kFractionBits;
+    case 0:
+      return dx;
+    case 1:
+      return -dx;
+    case 2:
+      return dy;
+    case 3:
+      return -dy;
+    case 4:
+      return ((dx + dy) * kDiagonal) >> kFractionBits;
+    case 5:
+      return ((dx - dy) * kDiagonal) >> kFractionBits;
+    case 6:
+      return ((dy - dx) * kDiagonal) >> kFractionBits;
+    default:
+      return ((-dx - dy) * kDiagonal) >> kFractionBits;
   }
 }
 
@@ -60,8 +68,7 @@ std::int32_t noiseHeight(const NoiseBase& noise, std::int32_t x, std::int32_t y)
   }
   std::int64_t share = (sum / weight_sum + kOne) / 2;  // 0..kOne
   share = share < 0 ? 0 : share > kOne ? kOne : share;
-  return std::int32_t(noise.lowest_q +
-                      (((std::int64_t(noise.highest_q) - noise.lowest_q) * share) >> kFractionBits));
+  return std::int32_t(noise.lowest_q + (((std::int64_t(noise.highest_q) - noise.lowest_q) * share) >> kFractionBits));
 }
 
 }  // namespace spoor

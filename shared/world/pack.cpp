@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x50525053;  // "SPRP"
 constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kListLimit = 4096;          // meshes, paths, bodies
-constexpr std::size_t kWaypointLimit = 1 << 16;   // of a path
-constexpr std::size_t kWorkLimit = 1 << 24;       // vertices, triangles and edges, over all bodies: a tick visits them all
-constexpr std::int32_t kWorldMargin = 1 << 27;    // waypoints outside the world, 0.1 mm
+constexpr std::size_t kListLimit = 4096;         // meshes, paths, bodies
+constexpr std::size_t kWaypointLimit = 1 << 16;  // of a path
+constexpr std::size_t kWorkLimit = 1 << 24;  // vertices, triangles and edges, over all bodies: a tick visits them all
+constexpr std::int32_t kWorldMargin = 1 << 27;      // waypoints outside the world, 0.1 mm
 constexpr std::int32_t kSoilLimit = (1 << 28) - 1;  // with a cubic's overshoot the base stays within the height limit
-constexpr std::int32_t kStrideLimit = 1 << 20;    // 105 m
-constexpr std::size_t kMeshLimit = 1 << 22;       // vertices, triangles of a mesh
-constexpr std::int32_t kGroundLimit = 1 << 29;    // base heights; leaves as much again for soil that piles up
-constexpr std::int32_t kMeshReach = 1 << 24;      // mesh coordinates, 0.1 mm
+constexpr std::int32_t kStrideLimit = 1 << 20;      // 105 m
+constexpr std::size_t kMeshLimit = 1 << 22;         // vertices, triangles of a mesh
+constexpr std::int32_t kGroundLimit = 1 << 29;      // base heights; leaves as much again for soil that piles up
+constexpr std::int32_t kMeshReach = 1 << 24;        // mesh coordinates, 0.1 mm
 
 Status outOfRange(const std::string& field, std::int64_t value, std::int64_t lowest, std::int64_t highest) {
   return Error{"pack: " + field + " is " + std::to_string(value) + ", not within " + std::to_string(lowest) + " .. " +
@@ -53,8 +53,10 @@ Status validateBase(const ScenePack& pack) {
   SPOOR_CHECK_RANGE(samples.step_x_q32, 1, std::int64_t(1) << 38);
   SPOOR_CHECK_RANGE(samples.step_y_q32, 1, std::int64_t(1) << 38);
   if (samples.height_q.size() != std::size_t(samples.column_count) * std::size_t(samples.row_count))
-    return Error{"pack: samples.height_q holds " + std::to_string(samples.height_q.size()) + " heights, not column_count * row_count"};
-  for (const std::int32_t sample_height : samples.height_q) SPOOR_CHECK_RANGE(sample_height, -kGroundLimit, kGroundLimit);
+    return Error{"pack: samples.height_q holds " + std::to_string(samples.height_q.size()) +
+                 " heights, not column_count * row_count"};
+  for (const std::int32_t sample_height : samples.height_q)
+    SPOOR_CHECK_RANGE(sample_height, -kGroundLimit, kGroundLimit);
   return {};
 }
 
@@ -142,9 +144,7 @@ void visitScalars(Pack& pack, Visit visit) {
 }
 
 template <typename BodyType, typename Visit>
-void visitScalars(BodyType& body, Visit visit)
-  requires std::same_as<std::remove_const_t<BodyType>, Body>
-{
+void visitScalars(BodyType& body, Visit visit) requires std::same_as<std::remove_const_t<BodyType>, Body> {
   visit(body.mesh_index);
   visit(body.path_index);
   for (auto& offset : body.offset_q) visit(offset);
@@ -256,7 +256,8 @@ Result<ScenePack> decodePack(std::span<const std::uint8_t> bytes) {
   ByteReader reader(bytes);
   if (reader.get<std::uint32_t>() != kMagic) return Error{"pack: not a Spoor scene pack (wrong magic)"};
   if (const auto version = reader.get<std::uint32_t>(); version != kVersion)
-    return Error{"pack: format version " + std::to_string(version) + ", this program reads " + std::to_string(kVersion)};
+    return Error{"pack: format version " + std::to_string(version) + ", this program reads " +
+                 std::to_string(kVersion)};
   const auto get = [&](auto& value) { value = reader.get<std::remove_reference_t<decltype(value)>>(); };
   // A list ends where the bytes do, however many elements it announces.
   const auto getCount = [&] { return reader.get<std::uint32_t>(); };

@@ -33,7 +33,7 @@ struct NoiseBase {
 struct SampleBase {
   std::int32_t column_count = 0;
   std::int32_t row_count = 0;
-  std::int64_t step_x_q32 = 0;        // samples per cell * 2^32, along x and along y; 1 .. 2^38
+  std::int64_t step_x_q32 = 0;  // samples per cell * 2^32, along x and along y; 1 .. 2^38
   std::int64_t step_y_q32 = 0;
   std::vector<std::int32_t> height_q;  // [row_count * column_count], 0.1 mm
   bool operator==(const SampleBase&) const = default;
@@ -57,10 +57,10 @@ struct Waypoint {
 
 /// Where scripted bodies go: waypoints at a constant speed from `first_tick`, resting at the last (or starting over).
 struct Path {
-  std::vector<Waypoint> waypoints;      // at least 1
-  std::int32_t speed_q_per_tick = 0;    // 0.1 mm per tick, >= 0
+  std::vector<Waypoint> waypoints;    // at least 1
+  std::int32_t speed_q_per_tick = 0;  // 0.1 mm per tick, >= 0
   std::int32_t first_tick = 0;
-  std::uint8_t closed = 0;              // 1: from the last waypoint back to the first, for ever
+  std::uint8_t closed = 0;  // 1: from the last waypoint back to the first, for ever
 };
 
 /// One rigid mesh on a path: a wheel, a chassis, a boot.
@@ -81,19 +81,19 @@ struct Body {
 struct ScenePack {
   std::string name;
   std::uint64_t seed = 0;
-  std::int32_t width_cells = 0;          // 1 .. kWorldCellsLimit
+  std::int32_t width_cells = 0;  // 1 .. kWorldCellsLimit
   std::int32_t height_cells = 0;
-  std::int32_t cell_q = 0;               // side of a cell, 0.1 mm, 1 .. 10^6; width_cells * cell_q < 2^31
+  std::int32_t cell_q = 0;  // side of a cell, 0.1 mm, 1 .. 10^6; width_cells * cell_q < 2^31
   std::int32_t ticks_per_second = 60;
-  std::int32_t default_ticks = 600;      // length of a session when nobody says otherwise
-  std::int32_t soil_depth_q = 0;         // soil over bedrock, 0.1 mm, >= 0
+  std::int32_t default_ticks = 600;       // length of a session when nobody says otherwise
+  std::int32_t soil_depth_q = 0;          // soil over bedrock, 0.1 mm, >= 0
   std::int32_t obstacle_threshold_q = 0;  // >= 0
-  std::int32_t slope_threshold_q = 1;    // height difference of side neighbours that rests, >= 1
+  std::int32_t slope_threshold_q = 1;     // height difference of side neighbours that rests, >= 1
   std::int32_t diagonal_threshold_q = 1;  // the same for diagonal neighbours, >= 1
-  std::int32_t sweeps_per_tick = 10;     // 0..64, shared out over the tick's sub-steps
+  std::int32_t sweeps_per_tick = 10;      // 0..64, shared out over the tick's sub-steps
   BaseKind base_kind = BaseKind::noise;
-  NoiseBase noise;                       // where base_kind is noise, else as made
-  SampleBase samples;                    // where base_kind is samples, else as made
+  NoiseBase noise;     // where base_kind is noise, else as made
+  SampleBase samples;  // where base_kind is samples, else as made
   std::vector<Mesh> meshes;
   std::vector<Path> paths;
   std::vector<Body> bodies;

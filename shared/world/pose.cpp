@@ -53,12 +53,9 @@ Turn blendTurn(Turn from, Turn to, std::int64_t part, std::int64_t whole) {
 
 Pose interpolate(const Pose& from, const Pose& to, int step, int step_count) {
   if (step == step_count) return to;
-  return {blend(from.x_q, to.x_q, step, step_count),
-          blend(from.y_q, to.y_q, step, step_count),
-          blend(from.z_q, to.z_q, step, step_count),
-          blendTurn(from.yaw, to.yaw, step, step_count),
-          blendTurn(from.pitch, to.pitch, step, step_count),
-          blendTurn(from.roll, to.roll, step, step_count),
+  return {blend(from.x_q, to.x_q, step, step_count),         blend(from.y_q, to.y_q, step, step_count),
+          blend(from.z_q, to.z_q, step, step_count),         blendTurn(from.yaw, to.yaw, step, step_count),
+          blendTurn(from.pitch, to.pitch, step, step_count), blendTurn(from.roll, to.roll, step, step_count),
           blendTurn(from.spin, to.spin, step, step_count)};
 }
 

@@ -121,7 +121,7 @@ Pose Script::bodyPose(const Body& body, std::int32_t tick) const {
   }
   pose.z_q = std::int32_t(ground - body.sinkage_q + body.offset_q[2] - box.lowest[2] + lift);
   if (body.roll_radius_q > 0) {
-    constexpr std::int64_t kTurnsPerRadian_milli = 10430378;         // 65536 / 2 pi
+    constexpr std::int64_t kTurnsPerRadian_milli = 10430378;             // 65536 / 2 pi
     constexpr std::int64_t kDistanceMask = (std::int64_t(1) << 39) - 1;  // 54 975 km, so that the product fits
     pose.spin = Turn((distance & kDistanceMask) * kTurnsPerRadian_milli / (std::int64_t(body.roll_radius_q) * 1000));
   }

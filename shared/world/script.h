@@ -19,8 +19,8 @@ class Script {
  private:
   /// A path's segments: start points, directions and the distance from the first waypoint to each start.
   struct Track {
-    std::vector<std::int64_t> start_q;    // [segments + 1], 0.1 mm along the path; the last is its length
-    std::vector<Turn> direction;          // [segments]
+    std::vector<std::int64_t> start_q;  // [segments + 1], 0.1 mm along the path; the last is its length
+    std::vector<Turn> direction;        // [segments]
   };
   /// A mesh's box in its own frame, 0.1 mm.
   struct Box {

@@ -14,7 +14,8 @@ Status validatePoses(const ScenePack& pack, std::span<const Pose> poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& pose = poses[i];
     const bool inside = pose.x_q > INT32_MIN + edge && pose.x_q < INT32_MAX - edge && pose.y_q > INT32_MIN + edge &&
-                        pose.y_q < INT32_MAX - edge && pose.z_q > -rules::kHeightLimit + edge && pose.z_q < rules::kHeightLimit - edge;
+                        pose.y_q < INT32_MAX - edge && pose.z_q > -rules::kHeightLimit + edge &&
+                        pose.z_q < rules::kHeightLimit - edge;
     if (!inside) return Error{"body " + std::to_string(i) + ": position out of range"};
   }
   return {};

@@ -9,13 +9,13 @@ namespace spoor {
 
 /// All that steers the future of a session, and nothing else (DESIGN.md, "state").
 struct WorldState {
-  std::int32_t tick = 0;             // ticks completed
+  std::int32_t tick = 0;  // ticks completed
   PackId pack_id;
   std::vector<Pose> poses;           // of every body of the pack, after `tick`
   std::vector<Pose> previous_poses;  // and one tick earlier
   TileStore tiles;
   // Sums over live tiles, kept up to date by whoever changes one.
-  std::uint64_t tiles_hash = 0;      // of tileStateHash
+  std::uint64_t tiles_hash = 0;  // of tileStateHash
   Ledger ledger;
 };
 

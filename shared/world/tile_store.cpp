@@ -14,7 +14,8 @@ std::uint64_t keyOf(TileCoordinate at) { return std::uint64_t(std::uint32_t(at.y
 void fillBedrock(const ScenePack& pack, TileCoordinate at, const PlaneCells& height, PlaneCells& bedrock) {
   for (int y = 0; y < rules::kTileSize; ++y)
     for (int x = 0; x < rules::kTileSize; ++x) {
-      const bool inside = at.x * rules::kTileSize + x < pack.width_cells && at.y * rules::kTileSize + y < pack.height_cells;
+      const bool inside =
+          at.x * rules::kTileSize + x < pack.width_cells && at.y * rules::kTileSize + y < pack.height_cells;
       const int i = y * rules::kTileSize + x;
       bedrock[i] = height[i] - (inside ? pack.soil_depth_q : 0);
     }
@@ -86,7 +87,8 @@ std::size_t TileStore::memoryBytes() const {
 std::uint64_t tileHash(const Tile& tile) {
   std::uint64_t sum = 0;
   for (int plane = 0; plane < kPlaneCount; ++plane)
-    sum += kernels().hashTile(tile.planes[plane]->data(), tile.at.x * rules::kTileSize, tile.at.y * rules::kTileSize, plane);
+    sum += kernels().hashTile(tile.planes[plane]->data(), tile.at.x * rules::kTileSize, tile.at.y * rules::kTileSize,
+                              plane);
   return sum;
 }
 

@@ -26,12 +26,12 @@ struct Tile {
   TileCoordinate at;
   std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // height is always there
   std::unique_ptr<PlaneCells> bedrock;
-  std::int32_t version_tick = 0;       // the tick at which it last changed, or became live
-  WakeMask wake_mask = 0;              // set by TileStore::setWake
-  std::int32_t awake_index = -1;       // place in the store's list of awake tiles
-  std::uint64_t hash = 0;              // sum of its cells' hashes; cells outside the world count too
-  std::int64_t ground = 0;             // sum of its heights, 0.1 mm * cells
-  std::int64_t initial = 0;            // the same when it became live
+  std::int32_t version_tick = 0;  // the tick at which it last changed, or became live
+  WakeMask wake_mask = 0;         // set by TileStore::setWake
+  std::int32_t awake_index = -1;  // place in the store's list of awake tiles
+  std::uint64_t hash = 0;         // sum of its cells' hashes; cells outside the world count too
+  std::int64_t ground = 0;        // sum of its heights, 0.1 mm * cells
+  std::int64_t initial = 0;       // the same when it became live
 
   PlaneCells& height() { return *planes[int(Plane::height)]; }
   const PlaneCells& height() const { return *planes[int(Plane::height)]; }

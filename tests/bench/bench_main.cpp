@@ -68,16 +68,20 @@ Series runScene(const Settings& settings, const Scene& scene, const NativeOption
 void print(const Series& series) {
   const auto ticks = std::int64_t(series.tick_ms.size());
   std::printf("%s, %s, %lld ticks: tick %.3f ms median, %.3f ms 99th percentile\n", series.scene.c_str(),
-              series.backend.c_str(), static_cast<long long>(ticks), percentile(series.tick_ms, 0.5), percentile(series.tick_ms, 0.99));
+              series.backend.c_str(), static_cast<long long>(ticks), percentile(series.tick_ms, 0.5),
+              percentile(series.tick_ms, 0.99));
   for (int stage = 0; stage < kStageCount; ++stage)
-    if (percentile(series.stage_ms[stage], 1) > 0) std::printf("  %-12s %8.3f ms\n", kStageNames[stage], percentile(series.stage_ms[stage], 0.5));
+    if (percentile(series.stage_ms[stage], 1) > 0)
+      std::printf("  %-12s %8.3f ms\n", kStageNames[stage], percentile(series.stage_ms[stage], 0.5));
   std::printf("  cells: domain %lld, active %lld, penetrating %lld; pairs visited %lld\n",
               static_cast<long long>(series.last.domain_cells), static_cast<long long>(series.last.active_cells),
               static_cast<long long>(series.last.penetrating_cells), static_cast<long long>(series.last.pairs_visited));
   std::printf("  bytes moved %.2f MB/tick, delta %lld B/tick before compression, live tiles %zu, store %.2f MB\n",
               double(series.bytes_moved) / double(std::max<std::int64_t>(ticks, 1)) / 1e6,
-              static_cast<long long>(series.delta_bytes / std::max<std::int64_t>(ticks, 1)), series.live_tiles, double(series.memory_bytes) / 1e6);
-  std::printf("  hash %s, ledger error %lld\n", hexText(series.hash).c_str(), static_cast<long long>(series.ledger_error));
+              static_cast<long long>(series.delta_bytes / std::max<std::int64_t>(ticks, 1)), series.live_tiles,
+              double(series.memory_bytes) / 1e6);
+  std::printf("  hash %s, ledger error %lld\n", hexText(series.hash).c_str(),
+              static_cast<long long>(series.ledger_error));
 }
 
 void writeJson(JsonWriter& json, const Series& series) {
@@ -89,7 +93,8 @@ void writeJson(JsonWriter& json, const Series& series) {
   json.value("tick_ms_median", percentile(series.tick_ms, 0.5));
   json.value("tick_ms_99", percentile(series.tick_ms, 0.99));
   json.beginObject("stage_ms_median");
-  for (int stage = 0; stage < kStageCount; ++stage) json.value(kStageNames[stage], percentile(series.stage_ms[stage], 0.5));
+  for (int stage = 0; stage < kStageCount; ++stage)
+    json.value(kStageNames[stage], percentile(series.stage_ms[stage], 0.5));
   json.end();
   json.value("domain_cells", series.last.domain_cells);
   json.value("active_cells", series.last.active_cells);
@@ -115,7 +120,8 @@ Scene loadScene(const std::string& name) {
     return scene;
   }
   std::ifstream file(name, std::ios::binary);
-  if (!file) throw std::runtime_error("scene " + name + ": neither a scene of the benchmark nor a pack that can be opened");
+  if (!file)
+    throw std::runtime_error("scene " + name + ": neither a scene of the benchmark nor a pack that can be opened");
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
   auto pack = decodePack(bytes);
   if (!pack) throw std::runtime_error(name + ": " + pack.error());
@@ -134,8 +140,9 @@ bool measureTicks(const Settings& settings, const std::vector<std::string>& name
     std::fprintf(stderr, "checking %s against one thread, baseline kernels, every pair visited ...\n", name.c_str());
     const Series check = runScene(settings, scene, plainest());
     print(series);
-    std::printf("  check: %s takes %.3f ms (%.1f x) and gives %s\n", check.backend.c_str(), percentile(check.tick_ms, 0.5),
-                percentile(check.tick_ms, 0.5) / percentile(series.tick_ms, 0.5), check.hash == series.hash ? "the same hash" : "ANOTHER HASH");
+    std::printf("  check: %s takes %.3f ms (%.1f x) and gives %s\n", check.backend.c_str(),
+                percentile(check.tick_ms, 0.5), percentile(check.tick_ms, 0.5) / percentile(series.tick_ms, 0.5),
+                check.hash == series.hash ? "the same hash" : "ANOTHER HASH");
     good = good && check.hash == series.hash && series.ledger_error == 0;
     writeJson(json, series);
     csv += csvLine(series);
@@ -153,19 +160,22 @@ bool measureWorlds(const Settings& settings, JsonWriter& json, std::string& csv)
     b = runScene(settings, wide, {int(settings.threads), nullptr, true});
     ratios.push_back(percentile(b.tick_ms, 0.5) / percentile(a.tick_ms, 0.5));
   }
-  const bool same = a.hash == runScene(settings, small, plainest()).hash && b.hash == runScene(settings, wide, plainest()).hash;
+  const bool same =
+      a.hash == runScene(settings, small, plainest()).hash && b.hash == runScene(settings, wide, plainest()).hash;
   print(a);
   print(b);
   std::printf("check: the plainest schedule gives %s\n", same ? "the same hashes" : "OTHER HASHES");
-  std::printf("65 536^2 against 2048^2: time x %.3f (median of 7 rounds), store memory x %.3f, live tiles %zu and %zu\n",
-              percentile(ratios, 0.5), double(b.memory_bytes) / double(a.memory_bytes), b.live_tiles, a.live_tiles);
+  std::printf(
+      "65 536^2 against 2048^2: time x %.3f (median of 7 rounds), store memory x %.3f, live tiles %zu and %zu\n",
+      percentile(ratios, 0.5), double(b.memory_bytes) / double(a.memory_bytes), b.live_tiles, a.live_tiles);
   writeJson(json, a);
   writeJson(json, b);
   csv += csvLine(a) + csvLine(b);
   return same && a.ledger_error == 0 && b.ledger_error == 0 && double(b.memory_bytes) <= 1.1 * double(a.memory_bytes);
 }
 
-/// Cell-iterations per second of plain sweeps: the slab's domain at work, nothing skipped against settled pairs skipped.
+/// Cell-iterations per second of plain sweeps: the slab's domain at work, nothing skipped against settled pairs
+/// skipped.
 bool measureRelax(const Settings& settings, JsonWriter& json, std::string& csv) {
   const Scene scene = loadScene("slab491");
   bool good = true;
@@ -173,9 +183,11 @@ bool measureRelax(const Settings& settings, JsonWriter& json, std::string& csv) 
   for (const Kernels* set : availableKernels())
     for (const bool skip : {false, true}) {
       const Series series = runScene(settings, scene, {int(settings.threads), set, skip});
-      const double sweeps_per_s = scene.pack.sweeps_per_tick / (percentile(series.stage_ms[int(Stage::relax)], 0.5) / 1e3);
+      const double sweeps_per_s =
+          scene.pack.sweeps_per_tick / (percentile(series.stage_ms[int(Stage::relax)], 0.5) / 1e3);
       std::printf("%-30s %-22s relax %7.3f ms, %6.0f M cell-iterations/s, hash %s\n", series.backend.c_str(),
-                  skip ? "settled pairs skipped" : "every pair visited", percentile(series.stage_ms[int(Stage::relax)], 0.5),
+                  skip ? "settled pairs skipped" : "every pair visited",
+                  percentile(series.stage_ms[int(Stage::relax)], 0.5),
                   sweeps_per_s * double(series.last.active_cells) / 1e6, hexText(series.hash).c_str());
       good = good && series.ledger_error == 0 && (hash == 0 || hash == series.hash);
       hash = series.hash;
@@ -189,8 +201,11 @@ int run(int argc, char** argv) {
   Settings settings;
   std::vector<std::string> what;
   Options options("spoor-bench", "times of the pipeline, checked by hash");
-  options.addPlain("tick|relax|world", "a whole tick by stages; sweeps by kernel set; one car in a small and a large world [tick]", &what, 1);
-  options.add("scene", "NAME|PACK", "scene of the benchmark, or a pack file; car491 and slab491 where none is named", &settings.scene);
+  options.addPlain("tick|relax|world",
+                   "a whole tick by stages; sweeps by kernel set; one car in a small and a large world [tick]", &what,
+                   1);
+  options.add("scene", "NAME|PACK", "scene of the benchmark, or a pack file; car491 and slab491 where none is named",
+              &settings.scene);
   options.add("backend", "NAME", "auto or native", &settings.backend);
   options.add("ticks", "N", "ticks of each run", &settings.ticks, 2, 1000000);
   options.add("threads", "N", "0: one for each processor", &settings.threads, 0, 256);
@@ -206,7 +221,9 @@ int run(int argc, char** argv) {
   csv += ",domain_cells,hash\n";
   bool good = false;
   if (kind == "tick") {
-    good = measureTicks(settings, settings.scene.empty() ? std::vector<std::string>{"car491", "slab491"} : std::vector{settings.scene}, json, csv);
+    good = measureTicks(
+        settings, settings.scene.empty() ? std::vector<std::string>{"car491", "slab491"} : std::vector{settings.scene},
+        json, csv);
   } else if (kind == "relax") {
     good = measureRelax(settings, json, csv);
   } else if (kind == "world") {
@@ -220,7 +237,8 @@ int run(int argc, char** argv) {
   json.end();
   if (!settings.json.empty())
     if (Status status = json.writeFile(settings.json); !status) throw std::runtime_error(status.error());
-  if (!settings.csv.empty() && !(std::ofstream(settings.csv) << csv)) throw std::runtime_error("cannot write " + settings.csv);
+  if (!settings.csv.empty() && !(std::ofstream(settings.csv) << csv))
+    throw std::runtime_error("cannot write " + settings.csv);
   if (!good) std::fprintf(stderr, "spoor-bench: a hash or a ledger is wrong\n");
   return good ? 0 : 1;
 }

@@ -10,8 +10,10 @@ constexpr std::int32_t kCell_q = 500;  // 5 cm
 void addBox(Mesh& mesh, std::array<std::int32_t, 3> low, std::array<std::int32_t, 3> high) {
   const auto first = std::uint32_t(mesh.vertices.size());
   for (int corner = 0; corner < 8; ++corner)
-    mesh.vertices.push_back({corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
-  constexpr std::uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    mesh.vertices.push_back(
+        {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
+  constexpr std::uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& quad : kQuads) {
     mesh.triangles.push_back({first + quad[0], first + quad[1], first + quad[2]});
     mesh.triangles.push_back({first + quad[0], first + quad[2], first + quad[3]});
@@ -88,9 +90,9 @@ ScenePack carScene(const std::string& name, std::int32_t cells) {
 std::vector<std::string> benchSceneNames() { return {"car491", "slab491", "pile", "car", "car_wide"}; }
 
 ScenePack makeBenchScene(const std::string& name) {
-  ScenePack pack = name == "car491"    ? domainScene(name, false)
-                   : name == "slab491" ? domainScene(name, true)
-                   : name == "car"     ? carScene(name, 2048)
+  ScenePack pack = name == "car491"     ? domainScene(name, false)
+                   : name == "slab491"  ? domainScene(name, true)
+                   : name == "car"      ? carScene(name, 2048)
                    : name == "car_wide" ? carScene(name, 65536)
                                         : emptyScene(name, 512);
   SPOOR_ASSERT(validatePack(pack));
