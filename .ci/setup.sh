@@ -18,7 +18,7 @@ install_packages() {
   command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || fail "needs Debian (dpkg and apt-get)"
   local missing=() package
   for package in "${spoor_packages[@]}"; do
-    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
   local as_root=()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <unordered_map>
 
 #include "protocol/frame.h"
@@ -20,6 +21,12 @@ constexpr std::size_t kServerWaitingLimitBytes = std::size_t(1) << 20;  // a cli
 constexpr std::size_t kClientWaitingLimitBytes = std::size_t(64) << 20;
 constexpr int kEventsPerService = 4096;
 constexpr int kFailuresPerService = 64;
+/// ENet's own clock follows the wall clock, which may step: silence is measured on this one.
+std::int64_t steadyMs() {
+  using namespace std::chrono;
+  return duration_cast<milliseconds>(steady_clock::now().time_since_epoch()).count();
+}
+
 constexpr std::int64_t kNotListening_ms = 250;  // a longer pause between two services is this end's own
 
 /// What is kept of a connected peer. ENet's peers and packets point here, so it never moves.
@@ -37,7 +44,7 @@ void onPacketFreed(ENetPacket* packet) { *static_cast<std::size_t*>(packet->user
 
 class EnetTransport final : public Transport {
  public:
-  explicit EnetTransport(ENetHost* host) : host_(host), last_service_ms_(enet_time_get()) {}
+  explicit EnetTransport(ENetHost* host) : host_(host), last_service_ms_(steadyMs()) {}
   ~EnetTransport() override {
     for (auto& [id, record] : records_) enet_peer_disconnect_now(record->peer, enet_uint32(CloseCode::left));
     enet_host_destroy(host_);  // before the records, which freed packets point to
@@ -69,7 +76,7 @@ class EnetTransport final : public Transport {
   PeerId next_id_ = 1;
   int failure_count_ = 0;
   std::int64_t now_ms_ = 0;
-  enet_uint32 last_service_ms_;
+  std::int64_t last_service_ms_;
 };
 
 PeerRecord& EnetTransport::adopt(ENetPeer* peer) {
@@ -84,8 +91,8 @@ PeerRecord& EnetTransport::adopt(ENetPeer* peer) {
 
 /// Time spent elsewhere since the last service is nobody's silence.
 void EnetTransport::notePause() {
-  const enet_uint32 time_ms = enet_time_get();
-  const auto passed_ms = std::int64_t(enet_uint32(time_ms - last_service_ms_));
+  const std::int64_t time_ms = steadyMs();
+  const std::int64_t passed_ms = time_ms - last_service_ms_;
   last_service_ms_ = time_ms;
   now_ms_ += passed_ms;
   if (passed_ms <= kNotListening_ms) return;
@@ -110,8 +117,8 @@ std::vector<TransportEvent> EnetTransport::service(int wait_ms) {
     ++failure_count_;
     if (++failures >= kFailuresPerService) break;
   }
-  const enet_uint32 time_ms = enet_time_get();
-  now_ms_ += std::int64_t(enet_uint32(time_ms - last_service_ms_));
+  const std::int64_t time_ms = steadyMs();
+  now_ms_ += time_ms - last_service_ms_;
   last_service_ms_ = time_ms;
   for (auto& [id, record] : records_) {  // acknowledgements count as being heard, and ENet asks for one every 500 ms
     if (record->peer->lastReceiveTime == record->last_receive_time) continue;
@@ -125,6 +132,10 @@ void EnetTransport::take(ENetEvent& event, std::vector<TransportEvent>& events) 
   auto* record = static_cast<PeerRecord*>(event.peer->data);
   switch (event.type) {
     case ENET_EVENT_TYPE_CONNECT:
+      if (record == nullptr && event.peer->channelCount < kChannelCount) {
+        enet_peer_disconnect_now(event.peer, 0);  // what is sent on a channel it lacks would vanish unseen
+        break;
+      }
       if (record == nullptr) record = &adopt(event.peer);
       record->heard_ms = now_ms_;
       record->announced = true;

@@ -53,7 +53,7 @@ class EnetSessionHost final : public SessionHost {
     SPOOR_ASSERT(thread_.joinable());  // once
     {
       const std::lock_guard lock(mutex_);
-      finish_until_ms_ = nowMs() + std::int64_t(timeout_s * 1000);
+      finish_timeout_ms_ = std::int64_t(timeout_s * 1000);
       is_finishing_ = true;
     }
     thread_.join();
@@ -74,7 +74,7 @@ class EnetSessionHost final : public SessionHost {
   std::mutex mutex_;
   std::vector<TickUpdate> queue_;
   bool is_finishing_ = false;
-  std::int64_t finish_until_ms_ = 0;
+  std::int64_t finish_timeout_ms_ = 0;
 
   std::thread thread_;  // last: it uses all of the above
 };
@@ -103,7 +103,9 @@ void EnetSessionHost::run() {
     clients_in_sync_ = book_.clientsInSync();
   }
   book_.sayGoodbye("the session is over");
-  while (!book_.allDone() && nowMs() < finish_until_ms_) book_.serve(nowMs(), kServeWait_ms);
+  const std::int64_t finish_until_ms =
+      nowMs() + finish_timeout_ms_;  // from here: a backlog of ticks is not the clients' time
+  while (!book_.allDone() && nowMs() < finish_until_ms) book_.serve(nowMs(), kServeWait_ms);
   book_.letGo();
   const std::int64_t until_ms = nowMs() + kClosing_ms;
   while (book_.isClosing() && nowMs() < until_ms) book_.serve(nowMs(), kServeWait_ms);

@@ -1,4 +1,5 @@
 #include "shared/base/bytes.h"
+#include "shared/base/json.h"
 #include "shared/codec/tile_codec.h"
 #include "shared/world/pose_bytes.h"
 
@@ -7,6 +8,7 @@ namespace spoor {
 std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base) {
   ByteWriter writer;
   writer.put(state.tick);
+  writer.put(stateHash(state));
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
@@ -25,6 +27,7 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   WorldState state;
   state.pack_id = id;
   state.tick = reader.get<std::int32_t>();
+  const auto state_hash = reader.get<std::uint64_t>();
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
   if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
@@ -40,6 +43,8 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
     if (change.base_version != kDormantVersion || change.new_version > state.tick)
       return Error{"snapshot: a tile is not against the base"};
   if (Status status = applyTiles(state, base, *changes); !status) return Error{"snapshot: " + status.error()};
+  if (const std::uint64_t hash = stateHash(state); hash != state_hash)
+    return Error{"snapshot: state hash " + hexText(hash) + " here, " + hexText(state_hash) + " announced"};
   return state;
 }
 

@@ -214,6 +214,10 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
 }  // namespace
 
 Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes) {
+  const auto fresh = std::size_t(std::ranges::count(changes, kDormantVersion, &TileChange::base_version));
+  if (state.tiles.size() + fresh > kSnapshotTilesLimit)
+    return Error{std::to_string(state.tiles.size() + fresh) + " live tiles, the limit is " +
+                 std::to_string(kSnapshotTilesLimit)};
   std::vector<Prepared> prepared;
   prepared.reserve(changes.size());
   for (const TileChange& change : changes) {
