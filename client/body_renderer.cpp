@@ -7,7 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "client/mesh_surface.h"
-#include "client/shader_loader.h"
+#include "shaders/host/shader_loader.h"
 #include "shaders/render/frame.h"
 #include "shaders/rules/limits.h"
 

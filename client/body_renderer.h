@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "client/camera.h"
-#include "client/gl_objects.h"
+#include "shaders/host/gl_objects.h"
 #include "shared/world/pack.h"
 
 namespace spoor {

@@ -1,10 +1,10 @@
+#include "client/gl_window.h"
+
 #include <epoxy/gl.h>
 // After epoxy, which replaces the system's GL header.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-
-#include "client/gl_context.h"
 
 namespace spoor {
 

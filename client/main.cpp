@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "client/gl_context.h"
+#include "client/gl_window.h"
 #include "client/headless_run.h"
 #include "client/session.h"
 #include "client/window_run.h"

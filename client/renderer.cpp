@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "client/gl_context.h"
-#include "client/shader_loader.h"
+#include "shaders/host/gl_context.h"
+#include "shaders/host/shader_loader.h"
 #include "shaders/rules/limits.h"
 #include "shared/base/assert.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "client/shader_loader.h"
+#include "shaders/host/shader_loader.h"
 #include "shared/base/assert.h"
 
 namespace spoor {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "client/camera.h"
-#include "client/gl_objects.h"
 #include "client/terrain_view.h"
+#include "shaders/host/gl_objects.h"
 #include "shaders/render/frame.h"
 
 namespace spoor {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "client/gl_context.h"
+#include "client/gl_window.h"
 #include "client/renderer.h"
 #include "client/session.h"
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "shaders/host/make_backend.h"
 #include "shared/base/json.h"
 #include "shared/base/options.h"
 #include "shared/codec/session.h"
@@ -86,8 +87,8 @@ int run(int argc, char** argv) {
   Options options("spoor-replay",
                   "reads a session file: info, verify (run it again), export (one CSV line for each tick)");
   options.addPlain("info|verify|export FILE", "what to do, with which session file", &arguments, 2);
-  options.add("backend", "NAME", "auto or native", &backend_name);
-  options.add("threads", "N", "of the native backend; 0: one for each processor", &threads, 0, 256);
+  options.add("backend", "NAME", "auto, gl or native; auto: gl on a hardware renderer", &backend_name);
+  options.add("threads", "N", "of the processor; 0: one for each core", &threads, 0, 256);
   options.parseOrExit(argc, argv);
   const std::string what = arguments.empty() ? "" : arguments[0];
   if (arguments.size() < 2 || (what != "info" && what != "verify" && what != "export")) {
@@ -98,7 +99,8 @@ int run(int argc, char** argv) {
   if (!reader) return fail(reader.error());
   if (what == "info") return info(**reader);
   if (what == "export") return exportTicks(**reader);
-  auto backend = makeBackend(backend_name, {int(threads), nullptr, true});
+  const auto say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  auto backend = makeBackend({backend_name, "auto", int(threads)}, say);
   if (!backend) return fail(backend.error());
   return verify(**reader, std::move(*backend));
 }

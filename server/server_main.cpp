@@ -11,13 +11,15 @@
 
 #include "server/report.h"
 #include "server/scene_source.h"
+#include "shaders/host/make_backend.h"
 
 namespace spoor {
 namespace {
 
 struct Settings {
   SceneSource source;
-  std::string backend = "auto", session, json;
+  std::string backend = "auto", gl_device = "auto", session, json;
+  bool list_devices = false;
   std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
   double rate_hz = -1, wait_s = 60;
 };
@@ -26,8 +28,11 @@ void parse(int argc, char** argv, Settings& settings) {
   Options options("spoor-server", "hosts a session of a scene");
   addSceneOptions(options, settings.source);
   options.add("port", "N", "UDP port; 0: one the system picks", &settings.port, 0, 65535);
-  options.add("backend", "NAME", "auto or native", &settings.backend);
-  options.add("threads", "N", "of the native backend; 0: one for each processor", &settings.threads, 0, 256);
+  options.add("backend", "NAME", "auto, gl or native; auto: gl on a hardware renderer", &settings.backend);
+  options.add("gl-device", "NAME", "of the gl backend: auto, surfaceless or an EGL device's number",
+              &settings.gl_device);
+  options.addFlag("list-devices", "print what the gl backend can run on, and leave", &settings.list_devices);
+  options.add("threads", "N", "of the processor; 0: one for each core", &settings.threads, 0, 256);
   options.add("ticks", "N", "length of the session; 0: as the scene says", &settings.ticks, 0, 1 << 30);
   options.add("rate", "HZ", "ticks per second; 0: as fast as they go; -1: as the scene says", &settings.rate_hz, -1.0,
               1000.0);
@@ -79,11 +84,17 @@ void awaitClients(const SessionHost& host, const Settings& settings) {
 int run(int argc, char** argv) {
   Settings settings;
   parse(argc, argv, settings);
+  if (settings.list_devices) {
+    for (const std::string& line : listDevices()) std::printf("%s\n", line.c_str());
+    return 0;
+  }
   setUpLog();
   LoadedScene scene = loadSeeded(settings);
   for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
   const BaseTerrain base(scene.pack);
-  Simulation simulation(base, scene.id, orThrow(makeBackend(settings.backend, {int(settings.threads), nullptr, true})));
+  const auto say = [](const std::string& line) { spdlog::info(line); };
+  Simulation simulation(base, scene.id,
+                        orThrow(makeBackend({settings.backend, settings.gl_device, int(settings.threads)}, say)));
   spdlog::info("scene {}, {} x {} cells of {} m, pack {}", scene.pack.name, scene.pack.width_cells,
                scene.pack.height_cells, scene.pack.cell_q / 1e4, toText(scene.id));
   spdlog::info("backend {}", simulation.backend().name());
@@ -100,13 +111,12 @@ int run(int argc, char** argv) {
   loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
   loop.rate_hz = settings.rate_hz < 0 ? scene.pack.ticks_per_second : settings.rate_hz;
   SessionReport report;
-  report.figures =
-      runTicks(simulation, base, loop, host.get(), writer.get(), [](const std::string& line) { spdlog::info(line); });
+  report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), say);
   report.clients = host->finish(30);
   report.scene = scene.pack.name;
   report.pack_id = toText(scene.id);
   report.backend = simulation.backend().name();
-  report.renderer = "none (native)";
+  report.renderer = simulation.backend().renderer();
   report.ticks = simulation.state().tick;
   report.ledger = simulation.state().ledger;
   report.server_hash = stateHash(simulation.state());

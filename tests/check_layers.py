@@ -17,7 +17,8 @@ MAY_INCLUDE = {
     "shared/world": ["shaders/rules", "shared/base", "shared/world"],
     "shared/codec": ["shaders/rules", "shared/base", "shared/world", "shared/codec"],
     "shared/sim": ["shaders/rules", "shared"],
-    "shaders/host": ["shaders/rules", "shared", "shaders/host"],
+    "shaders/sim": ["shaders/rules", "shaders/sim"],
+    "shaders/host": ["shaders/rules", "shared", "shaders/sim", "shaders/host"],
     "protocol": ["shaders/rules", "shared", "protocol"],
     "server": ["shaders/rules", "shared", "protocol", "shaders/host", "server"],
     "shaders/render": ["shaders/rules", "shaders/render"],
@@ -36,13 +37,16 @@ OWNERS = {
     "epoxy": r"(client|shaders/host)/", "GLFW": r"client/", "glm": r"(client|shaders/render)/", "png.h": r"client/",
     "fmt": r"(protocol|server|client)/", "spdlog": r"(protocol|server|client)/",
 }
-# What the core may include besides itself: the C++ standard library and the C library's option parser.
+# Rooms of the core, and what they may include besides the project and what they own: the C++ standard library and the C
+# library's option parser.
+CORE = ("shaders/rules", "shaders/sim", "shaders/host", "shared")
 STANDARD = re.compile(r"^([a-z_]+|getopt\.h)$")
 # Libraries a room's targets may be linked to.
 MAY_LINK = {
     "shared": {"spoor_flags", "spoor_shared", "Threads::Threads"},
+    "shaders": {"spoor_gl", "spoor_backends", "spoor_shared", "epoxy"},
     "protocol": {"spoor_protocol", "spoor_shared", "enet", "flatbuffers", "zstd", "fmt", "spdlog"},
-    "tests/bench": {"spoor-bench", "spoor_shared", "spoor_gl"},
+    "tests/bench": {"spoor-bench", "spoor_backends"},
 }
 NEVER_LINK = {"server": {"spoor_render", "spoor_client", "spoor_session"}, "client": {"spoor_import", "spoor_host"}}
 
@@ -56,8 +60,9 @@ def room_of(path):
 
 def check_includes(path, room, faults):
     for include in INCLUDE.findall((ROOT / path).read_text()):
-        if (ROOT / path).parent.joinpath(include).is_file() and "/" not in include:
-            include = str(pathlib.PurePosixPath(path).parent / include)
+        beside = (ROOT / path).parent / include
+        if beside.is_file() and beside.resolve().is_relative_to(ROOT):
+            include = beside.resolve().relative_to(ROOT).as_posix()
         if (ROOT / include).is_file():
             if not any(include.startswith(folder + "/") for folder in MAY_INCLUDE[room]):
                 faults.append(f"{path}: includes {include}, which {room} may not know")
@@ -66,7 +71,7 @@ def check_includes(path, room, faults):
         owner = OWNERS.get(include) or OWNERS.get(library)
         if owner and not re.match(owner, path):
             faults.append(f"{path}: includes {include}, which belongs to {owner}")
-        if room.startswith(("shared", "shaders/rules")) and not STANDARD.match(include):
+        if room.startswith(CORE) and not owner and not STANDARD.match(include):
             faults.append(f"{path}: includes {include}; the core knows the standard library only")
 
 
@@ -85,7 +90,7 @@ def check_links(path, faults):
 def main():
     faults = []
     files = 0
-    for suffix in ("*.h", "*.cpp", "*.inl"):
+    for suffix in ("*.h", "*.cpp", "*.inl", "*.glsl", "*.vert", "*.tesc", "*.tese", "*.frag", "*.comp"):
         for file in sorted(ROOT.rglob(suffix)):
             path = file.relative_to(ROOT).as_posix()
             room = room_of(path)

@@ -10,6 +10,7 @@
 
 #include "shaders/rules/exchange.h"
 #include "shaders/rules/mix.h"
+#include "shaders/rules/nearest.h"
 #include "shaders/rules/penetration.h"
 #include "shaders/rules/raster.h"
 
@@ -103,15 +104,15 @@ TEST_P(EveryKernels, NearestFreeRowOfEachColumn) {
     std::vector<Cells> overlap(kRows), nearest(kRows, Cells(std::size_t(n)));
     for (Cells& row : overlap)
       for (int i = 0; i < n; ++i) row.push_back(engine_() % 12 == 0 && i % 7 != 0 ? rules::kFree : int(engine_() % 2));
-    Cells last(std::size_t(n), kNoFreeRow);
+    Cells last(std::size_t(n), rules::kNoFreeRow);
     for (int y = 0; y < kRows; ++y)
       kernels_.carryFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
-    last.assign(std::size_t(n), kNoFreeRow);
+    last.assign(std::size_t(n), rules::kNoFreeRow);
     for (int y = kRows - 1; y >= 0; --y)
       kernels_.mergeFree(overlap[std::size_t(y)].data(), n, y, last.data(), nearest[std::size_t(y)].data());
     for (int y = 0; y < kRows; ++y)
       for (int i = 0; i < n; ++i) {
-        int expected = kNoFreeRow;
+        int expected = rules::kNoFreeRow;
         for (int free = 0; free < kRows; ++free)
           if (overlap[std::size_t(free)][std::size_t(i)] == rules::kFree && std::abs(free - y) < std::abs(expected - y))
             expected = free;

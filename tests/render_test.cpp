@@ -7,12 +7,11 @@
 #include <memory>
 #include <random>
 
-#include "client/gl_context.h"
 #include "client/mesh_surface.h"
 #include "client/recording.h"
 #include "client/renderer.h"
-#include "client/shader_loader.h"
 #include "client/views.h"
+#include "shaders/host/gl_context.h"
 
 namespace spoor {
 namespace {
@@ -252,18 +251,6 @@ TEST(MeshSurface, SharpEdgesStaySharpAndFlatOnesAreShared) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(points[i].normal, glm::vec3(0.0f, 0.0f, 1.0f));
   for (std::size_t i = 6; i < 9; ++i) EXPECT_NEAR(points[i].normal.z, 0.0f, 1e-6f);
   EXPECT_EQ(points[1].point_m, glm::vec3(1.0f, 0.0f, 0.0f));
-}
-
-TEST(ShaderText, ErrorsNameTheRealFile) {
-  const auto text = loadShaderText(shaderFolder() / "render/picture.frag");
-  ASSERT_TRUE(text) << text.error();
-  ASSERT_GT(text->files.size(), 2u);
-  const std::string log = namedLog("2:17(3): error: syntax\n1(4) : error C0000\n", text->files);
-  EXPECT_NE(log.find(text->files[2] + ":17(3): error"), std::string::npos);
-  EXPECT_NE(log.find(text->files[1] + "(4) : error"), std::string::npos);
-  const auto missing = loadShaderText(shaderFolder() / "render/none.frag");
-  ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().find("none.frag"), std::string::npos);
 }
 
 TEST(Recording, ReplaysTheTilesOfEachMomentHoweverLongTheSession) {

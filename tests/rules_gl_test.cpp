@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "client/gl_context.h"
-#include "client/shader_loader.h"
+#include "shaders/host/gl_context.h"
+#include "shaders/host/shader_loader.h"
 #include "tests/rules_probe.h"
 
 namespace spoor {

@@ -41,6 +41,8 @@ RULE int wideLow(wide a) { return int(a); }
 RULE wide wideTimes(wide a, int b) { return a * b; }
 /// floor(a / b); b > 0.
 RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
+/// floor(a / 2^30) where that fits an int.
+RULE int wideFromQ30(wide a) { return int(a >> 30); }
 
 RULE int minInt(int a, int b) { return a < b ? a : b; }
 RULE int maxInt(int a, int b) { return a > b ? a : b; }
@@ -104,6 +106,8 @@ wide wideFloorDiv(wide a, wide b) {
   wide result = wideSub(zero, quotient);
   return wideZero(part) ? result : wideSub(result, wide(1u, 0u));
 }
+
+int wideFromQ30(wide a) { return int((a.high << 2) | (a.low >> 30)); }
 
 int minInt(int a, int b) { return min(a, b); }
 int maxInt(int a, int b) { return max(a, b); }

@@ -9,6 +9,16 @@
 
 SPOOR_RULES_BEGIN
 
+/// In a column without a free cell: so far away that it never wins.
+RULE_CONST kNoFreeRow = -(1 << 20);
+
+/// The nearest free row of a column seen from row y, of the nearest at or beneath it and the nearest at or above it.
+RULE int nearestInColumn(int y, int beneath, int above) {
+  // The unset value lies beneath every row: seen from above it is far, whichever way the rows run.
+  int to_above = above < 0 ? -kNoFreeRow * 2 : above - y;
+  return to_above < y - beneath ? above : beneath;
+}
+
 /// Is free cell (ax, ay) before (bx, by) in the order, seen from x in row y? Range: spans up to 16384 cells.
 RULE bool nearestBefore(int x, int y, int ax, int ay, int bx, int by) {
   int da = (x - ax) * (x - ax) + (y - ay) * (y - ay);

@@ -20,6 +20,9 @@ struct RasterPoint {
   int z;
 };
 
+/// Height of a body's point in the world. Ranges: a valid pose's z, a point of its mesh.
+RULE int heightInWorld(int body_z, int point_z) { return clampInt(body_z + point_z, -kHeightLimit, kNoUnderside); }
+
 /// A triangle with its plane, wound so that its area is positive. area: twice the area, subcells^2.
 struct RasterTriangle {
   RasterPoint a;

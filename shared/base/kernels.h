@@ -39,9 +39,6 @@ struct Kernels {
                                 int pair_count, int threshold, int obstacle_threshold);
 };
 
-/// In a column without a free cell: so far away that it never wins.
-inline constexpr std::int32_t kNoFreeRow = -(1 << 20);
-
 /// The sets this processor runs, slowest first; "baseline" is always there.
 std::span<const Kernels* const> availableKernels();
 

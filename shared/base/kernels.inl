@@ -3,6 +3,7 @@
 // be the copy that the linker keeps for everyone.
 #include "shaders/rules/exchange.h"
 #include "shaders/rules/mix.h"
+#include "shaders/rules/nearest.h"
 #include "shaders/rules/penetration.h"
 #include "shaders/rules/raster.h"
 #include "shared/base/kernels.h"
@@ -84,9 +85,7 @@ void mergeFree(const int32_t* overlap, int n, int y, int32_t* __restrict last_fr
   for (int i = 0; i < n; ++i) {
     const int32_t above = overlap[i] == rules::kFree ? y : last_free[i];
     last_free[i] = above;
-    // The unset value lies beneath every row: seen from above it is far, whichever way the rows run.
-    const int32_t to_above = above < 0 ? -kNoFreeRow * 2 : above - y;
-    out[i] = to_above < y - out[i] ? above : out[i];
+    out[i] = rules::nearestInColumn(y, out[i], above);
   }
 }
 

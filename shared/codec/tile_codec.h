@@ -10,8 +10,9 @@
 namespace spoor {
 
 // A few bytes of a change can make a whole tile live (48 KiB), so changes are bounded in number: those of a tick by
-// what a tick may simulate, those of a snapshot by what a client may hold.
-inline constexpr std::size_t kTickTilesLimit = 1 << 14;
+// what a tick may simulate, those of a snapshot by what a client may hold. A tick's tiles, 16 KiB a plane, fit the
+// storage block of 128 MiB that every OpenGL 4.5 gives.
+inline constexpr std::size_t kTickTilesLimit = 1 << 13;
 inline constexpr std::size_t kSnapshotTilesLimit = 1 << 17;
 
 /// Version of a tile that was dormant: it equals the base.

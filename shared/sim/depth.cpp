@@ -11,10 +11,6 @@
 namespace spoor {
 namespace {
 
-std::int32_t absoluteHeight(std::int64_t z) {
-  return std::int32_t(std::clamp<std::int64_t>(z, -rules::kHeightLimit, rules::kNoUnderside));
-}
-
 /// A body's triangles, then its edges, in rough order of their lowest points.
 struct DrawOrder {
   const PlacedBody* body;
@@ -99,11 +95,11 @@ class RowTarget {
                     const PlacedBody& body) {
     const CellBox cells = cellsOf(body, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}),
                                   std::max({a.y, b.y, c.y}));
-    const std::int32_t lowest = absoluteHeight(std::int64_t(body.z_q) + std::min({a.z, b.z, c.z}));
+    const std::int32_t lowest = rules::heightInWorld(body.z_q, std::min({a.z, b.z, c.z}));
     if (cells.empty() || hidden(cells, lowest)) return;
     const rules::RasterTriangle t = rules::rasterTriangle(a, b, c);
     if (rules::wideZero(t.area)) return;
-    const std::int32_t highest = absoluteHeight(std::int64_t(body.z_q) + t.highest);
+    const std::int32_t highest = rules::heightInWorld(body.z_q, t.highest);
     // Clipped to the body, not to the domain: heights along a row are counted from where its span begins.
     const rules::RasterSpan whole = {body.box.x0 - body.origin_x, body.box.x1 - body.origin_x};
     for (int y = cells.y0; y < cells.y1; ++y) {
@@ -111,21 +107,20 @@ class RowTarget {
       if (span.end <= span.begin) continue;
       const int start = rules::triangleHeight(t, span.begin, y - body.origin_y);
       context_.kernels.lowerAlong(cellAt(span.begin + body.origin_x, y), span.end - span.begin,
-                                  absoluteHeight(std::int64_t(body.z_q) + start), t.step, t.step_fraction, lowest,
-                                  highest);
+                                  rules::heightInWorld(body.z_q, start), t.step, t.step_fraction, lowest, highest);
     }
   }
 
   void drawEdge(const rules::RasterPoint& a, const rules::RasterPoint& b, const PlacedBody& body) {
     const CellBox cells = cellsOf(body, std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y));
-    if (cells.empty() || hidden(cells, absoluteHeight(std::int64_t(body.z_q) + std::min(a.z, b.z)))) return;
+    if (cells.empty() || hidden(cells, rules::heightInWorld(body.z_q, std::min(a.z, b.z)))) return;
     const rules::RasterEdge e = rules::rasterEdge(a, b);
     const bool along_y = e.along_y != 0;
     const int u_origin = along_y ? body.origin_y : body.origin_x;
     const int v_origin = along_y ? body.origin_x : body.origin_y;
     for (int u = along_y ? cells.y0 : cells.x0; u < (along_y ? cells.y1 : cells.x1); ++u) {
       const rules::EdgeColumn column = rules::edgeColumn(e, u - u_origin);
-      const std::int32_t height = absoluteHeight(std::int64_t(body.z_q) + column.height);
+      const std::int32_t height = rules::heightInWorld(body.z_q, column.height);
       const int first = std::max(column.first + v_origin, along_y ? box_.x0 : box_.y0);
       const int last = std::min(column.last + v_origin, (along_y ? box_.x1 : box_.y1) - 1);
       for (int v = first; v <= last; ++v) {

@@ -27,7 +27,9 @@ class NativeBackend final : public Backend {
     return std::string("native (") + kernels_->name + ", " + std::to_string(pool_.threadCount()) + " threads)";
   }
 
-  TickEffect run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
+  std::string renderer() const override { return "none (native)"; }
+
+  Result<TickEffect> run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
     const NativeContext context{base.pack(), *kernels_, pool_, area_};
     TickEffect effect;
     std::vector<Tile*> made_live;
@@ -47,6 +49,20 @@ class NativeBackend final : public Backend {
       effect.changes = runHash(context, plan, made_live, state);
     }
     return effect;
+  }
+
+  Status collect(WorldState&, std::vector<TileChange>&) override { return {}; }  // run() has done it all
+
+  BackendMemory memory() const override {
+    std::size_t cells = area_.height.capacity() + area_.bedrock.capacity() + area_.underside.capacity() +
+                        area_.lowest_underside.capacity() + area_.last_change.capacity() + underside_before_.capacity();
+    std::size_t sums = 0;
+    for (const DomainWork& domain : domains_) {
+      cells +=
+          domain.overlap.capacity() + domain.nearest_row.capacity() + domain.target.capacity() + domain.room.capacity();
+      sums += domain.requested.capacity() + domain.granted.capacity();
+    }
+    return {std::int64_t(cells * sizeof(std::int32_t) + sums * sizeof(std::int64_t)), 0};
   }
 
  private:
@@ -102,11 +118,6 @@ class NativeBackend final : public Backend {
 
 std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options) {
   return std::make_unique<NativeBackend>(options);
-}
-
-Result<std::unique_ptr<Backend>> makeBackend(const std::string& name, const NativeOptions& options) {
-  if (name == "native" || name == "auto") return makeNativeBackend(options);
-  return Error{"backend '" + name + "' is not in this build; it has: auto, native"};
 }
 
 }  // namespace spoor

@@ -16,12 +16,12 @@ void searchColumns(const NativeContext& context, DomainWork& domain) {
   context.pool.forEach((width + task_columns - 1) / task_columns, [&](int task, int) {
     const int x = task * task_columns;
     const int count = std::min(task_columns, width - x);
-    std::vector<std::int32_t> last_free(std::size_t(count), kNoFreeRow);
+    std::vector<std::int32_t> last_free(std::size_t(count), rules::kNoFreeRow);
     for (int y = 0; y < rows; ++y) {
       const std::size_t at = std::size_t(y) * width + x;
       context.kernels.carryFree(domain.overlap.data() + at, count, y, last_free.data(), domain.nearest_row.data() + at);
     }
-    std::ranges::fill(last_free, kNoFreeRow);
+    std::ranges::fill(last_free, rules::kNoFreeRow);
     for (int y = rows - 1; y >= 0; --y) {
       const std::size_t at = std::size_t(y) * width + x;
       context.kernels.mergeFree(domain.overlap.data() + at, count, y, last_free.data(), domain.nearest_row.data() + at);
@@ -41,7 +41,7 @@ class RowEnvelope {
     // No column farther away than the worst vertical distance can win.
     int reach = 0;
     for (int x = first; x <= last; ++x)
-      if (overlap[x] > 0) reach = std::max(reach, free_row[x] == kNoFreeRow ? width : std::abs(free_row[x] - y));
+      if (overlap[x] > 0) reach = std::max(reach, free_row[x] == rules::kNoFreeRow ? width : std::abs(free_row[x] - y));
     build(free_row, y, std::max(first - reach, 0), std::min(last + reach + 1, width));
     std::size_t part = 0;
     int marked_row = -1;
@@ -69,7 +69,7 @@ class RowEnvelope {
     columns_.clear();
     starts_.clear();
     for (int x = begin; x < end; ++x) {
-      if (free_row[x] == kNoFreeRow) continue;
+      if (free_row[x] == rules::kNoFreeRow) continue;
       int start = begin;
       while (!columns_.empty()) {
         const int top = columns_.back();

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "shaders/rules/raster.h"
+#include "shaders/rules/place.h"
 #include "shared/base/result.h"
 #include "shared/codec/tile_codec.h"
 
@@ -24,6 +24,7 @@ struct PlacedBody {
   std::int32_t body_index = 0;
   std::int32_t origin_x = 0, origin_y = 0;
   std::int32_t z_q = 0;
+  rules::Placement placement;
   CellBox box;  // every cell that the mesh can cover, clipped to the world
   std::vector<rules::RasterPoint> points;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <span>
 
@@ -22,9 +23,21 @@ class Simulation {
   /// Goes on from a state of the same pack, as from a snapshot.
   Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend);
 
-  /// Runs one tick that takes the bodies to `poses`. Errors, which leave the state untouched: poses that validatePoses
-  /// refuses, a tick that planTick finds too large.
+  /// Runs one tick that takes the bodies to `poses`: begin() and finish().
   Result<TickResult> step(std::span<const Pose> poses);
+
+  /// The first half: plans the tick and runs its stages. Afterwards the state's hash, ledger and poses are the new
+  /// tick's, its cells may not be yet. Two ticks may be begun and not finished (asserted), so that one is encoded and
+  /// published while a device works on the next.
+  /// Errors, which leave the state untouched: poses that validatePoses refuses, a tick that planTick finds too large, a
+  /// device that is lost or has not the memory.
+  [[nodiscard]] Status begin(std::span<const Pose> poses);
+
+  /// The second half, of the oldest tick begun (asserted): its changed cells, encoded.
+  /// Errors: the device is lost; the session cannot go on.
+  Result<TickResult> finish();
+
+  static constexpr std::size_t kTicksInFlight = 2;
 
   const WorldState& state() const { return state_; }
   const Backend& backend() const { return *backend_; }
@@ -34,6 +47,7 @@ class Simulation {
   std::vector<std::int32_t> reach_q_;  // bodyReaches
   std::unique_ptr<Backend> backend_;
   WorldState state_;
+  std::deque<TickResult> in_flight_;
 };
 
 }  // namespace spoor

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "shared/base/assert.h"
+#include "shared/sim/backend.h"
 
 namespace spoor {
 namespace {
@@ -27,16 +28,14 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
 std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state,
                                     ThreadPool& pool) {
   const int count = int(plan.active.size());
-  tiles.assign(plan.active.size(), nullptr);
+  std::vector<Tile*> made;
+  tiles = takeTiles(plan, base, state, pool, made);
   runs.clear();
   bands.clear();
   run_of_tile.clear();
-  std::vector<int> missing;
   std::size_t cells = 0, segments = 0;
   for (int i = 0; i < count; ++i) {
     const TileCoordinate at = plan.active[i];
-    tiles[i] = state.tiles.find(at);
-    if (tiles[i] == nullptr) missing.push_back(i);
     if (bands.empty() || bands.back().tile_y != at.y) bands.push_back({at.y, int(runs.size()), 0});
     if (bands.back().run_count == 0 || runs.back().first.x + runs.back().tile_count != at.x) {
       runs.push_back({at, 0, cells, segments});
@@ -47,13 +46,6 @@ std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& bas
     run_of_tile.push_back(int(runs.size()) - 1);
     cells += rules::kTileCells;
     segments += kSize;
-  }
-  std::vector<std::unique_ptr<Tile>> fresh(missing.size());
-  pool.forEach(int(missing.size()), [&](int i, int) { fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick); });
-  std::vector<Tile*> made;
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    tiles[missing[i]] = &state.tiles.insert(std::move(fresh[i]));
-    made.push_back(tiles[missing[i]]);
   }
 
   height.resize(cells);

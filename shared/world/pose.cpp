@@ -1,5 +1,6 @@
 #include "shared/world/pose.h"
 
+#include "shaders/rules/place.h"
 #include "shared/base/fixed.h"
 
 namespace spoor {
@@ -38,13 +39,11 @@ Rotation rotationOf(const Pose& pose) {
 }
 
 std::array<std::int32_t, 3> rotate(const Rotation& rotation, const std::array<std::int32_t, 3>& point) {
-  std::array<std::int32_t, 3> result;
-  for (int row = 0; row < 3; ++row) {
-    std::int64_t sum = std::int64_t(1) << 29;
-    for (int i = 0; i < 3; ++i) sum += std::int64_t(rotation.m_q30[row * 3 + i]) * point[i];
-    result[row] = std::int32_t(sum >> 30);
-  }
-  return result;
+  const auto& m = rotation.m_q30;
+  const auto row = [&](int i) {
+    return rules::rotatedCoordinate(m[i], m[i + 1], m[i + 2], point[0], point[1], point[2]);
+  };
+  return {row(0), row(3), row(6)};
 }
 
 Turn blendTurn(Turn from, Turn to, std::int64_t part, std::int64_t whole) {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "shaders/host/make_backend.h"
 #include "shared/base/json.h"
 #include "shared/base/options.h"
 #include "shared/base/statistics.h"
@@ -37,7 +38,10 @@ struct Series {
 
 /// Runs a scene's scripted bodies; the first tick is warm-up and not in the figures.
 Series runScene(const Settings& settings, const Scene& scene, const NativeOptions& options) {
-  auto backend = makeBackend(settings.backend, options);
+  auto backend = settings.backend == "native"
+                     ? Result<std::unique_ptr<Backend>>(makeNativeBackend(options))
+                     : makeBackend({settings.backend, "auto", int(settings.threads)},
+                                   [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); });
   if (!backend) throw std::runtime_error(backend.error());
   const BaseTerrain base(scene.pack);
   const Script script(base);

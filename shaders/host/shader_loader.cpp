@@ -1,6 +1,4 @@
-#include "client/shader_loader.h"
-
-#include <fmt/format.h>
+#include "shaders/host/shader_loader.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -20,13 +18,21 @@ constexpr std::size_t kTextBytesLimit = std::size_t(4) << 20;
 
 Result<std::string> readText(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return Error{fmt::format("shader {}: cannot be read", file.string())};
+  if (!stream) return Error{"shader " + file.string() + ": cannot be read"};
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
 }
 
-Status append(ShaderText& out, const fs::path& file, int depth) {
+std::string place(const fs::path& file, int line_number) { return file.string() + ":" + std::to_string(line_number); }
+
+/// Says what line of which file comes next.
+std::string lineDirective(int line_number, std::ptrdiff_t file_number) {
+  return "#line " + std::to_string(line_number) + " " + std::to_string(file_number) + "\n";
+}
+
+Status append(ShaderText& out, const fs::path& file, int depth, const std::string& after_version) {
+  static const std::regex kVersion(R"re(^\s*#\s*version\b.*)re");
   static const std::regex kInclude(R"re(^\s*#\s*include\s*"([^"]+)".*)re");
   static const std::regex kSystemInclude(R"re(^\s*#\s*include\s*<.*)re");
   auto text = readText(file);
@@ -34,25 +40,32 @@ Status append(ShaderText& out, const fs::path& file, int depth) {
   const auto known = std::find(out.files.begin(), out.files.end(), file.string());
   const auto number = known - out.files.begin();
   if (known == out.files.end()) out.files.push_back(file.string());
-  if (depth > 0) out.text += fmt::format("#line 1 {}\n", number);
+  if (depth > 0) out.text += lineDirective(1, number);
+  bool defined = after_version.empty();
   std::istringstream lines(*text);
   std::string line;
   for (int line_number = 1; std::getline(lines, line); ++line_number) {
     std::smatch match;
     if (std::regex_match(line, match, kInclude)) {
       if (depth == kIncludeDepthLimit)
-        return Error{fmt::format("shader {}:{}: includes nested deeper than {}", file.string(), line_number,
-                                 kIncludeDepthLimit)};
+        return Error{"shader " + place(file, line_number) + ": includes nested deeper than " +
+                     std::to_string(kIncludeDepthLimit)};
       const fs::path wanted = (file.parent_path() / match[1].str()).lexically_normal();
-      if (const Status status = append(out, wanted, depth + 1); !status)
-        return Error{fmt::format("{} (included by {}:{})", status.error(), file.string(), line_number)};
-      out.text += fmt::format("#line {} {}\n", line_number + 1, number);
+      if (const Status status = append(out, wanted, depth + 1, {}); !status)
+        return Error{status.error() + " (included by " + place(file, line_number) + ")"};
+      out.text += lineDirective(line_number + 1, number);
     } else {
       out.text += std::regex_match(line, kSystemInclude) ? "\n" : line + "\n";
+      if (!defined && std::regex_match(line, kVersion)) {
+        out.text += after_version + lineDirective(line_number + 1, number);
+        defined = true;
+      }
     }
     if (out.text.size() > kTextBytesLimit)
-      return Error{fmt::format("shader {}: longer than {} bytes with its includes", file.string(), kTextBytesLimit)};
+      return Error{"shader " + file.string() + ": longer than " + std::to_string(kTextBytesLimit) +
+                   " bytes with its includes"};
   }
+  if (!defined) return Error{"shader " + file.string() + ": no #version line for its defines to follow"};
   return {};
 }
 
@@ -63,20 +76,24 @@ GLenum stageOf(const std::string& name) {
   if (suffix == ".tese") return GL_TESS_EVALUATION_SHADER;
   if (suffix == ".frag") return GL_FRAGMENT_SHADER;
   if (suffix == ".comp") return GL_COMPUTE_SHADER;
-  throw std::runtime_error(fmt::format("shader {}: \"{}\" names no stage", name, suffix));
+  throw std::runtime_error("shader " + name + ": \"" + suffix + "\" names no stage");
 }
 
-std::string firstLine(const std::string& text) {
-  const auto begin = text.find_first_not_of(" \n\r\t");
-  if (begin == std::string::npos) return "the driver gave no log";
-  return text.substr(begin, text.find('\n', begin) - begin);
+/// The first line of a log that tells of an error, else its first line.
+std::string firstError(const std::string& log) {
+  static const std::regex kError(R"re(\berror\b)re", std::regex::icase);
+  std::istringstream lines(log);
+  std::string line, first;
+  while (std::getline(lines, line)) {
+    if (std::regex_search(line, kError)) return line;
+    if (first.empty() && line.find_first_not_of(" \r\t") != std::string::npos) first = line;
+  }
+  return first.empty() ? "the driver gave no log" : first;
 }
 
-GlShader compile(const std::string& name) {
-  const auto text = loadShaderText(shaderFolder() / name);
-  if (!text) throw std::runtime_error(text.error());
+GlShader compile(const std::string& name, const ShaderText& text) {
   GlShader shader(glCreateShader(stageOf(name)));
-  const char* source = text->text.c_str();
+  const char* source = text.text.c_str();
   glShaderSource(shader.name(), 1, &source, nullptr);
   glCompileShader(shader.name());
   GLint compiled = 0;
@@ -86,7 +103,7 @@ GlShader compile(const std::string& name) {
     GLsizei length = 0;
     glGetShaderInfoLog(shader.name(), GLsizei(log.size()), &length, log.data());
     log.resize(std::size_t(length));
-    throw std::runtime_error(fmt::format("shader {}: {}", name, firstLine(namedLog(log, text->files))));
+    throw std::runtime_error("shader " + name + ": " + firstError(namedLog(log, text.files)));
   }
   return shader;
 }
@@ -98,9 +115,11 @@ fs::path shaderFolder() {
   return chosen != nullptr && *chosen != '\0' ? fs::path(chosen) : fs::path(SPOOR_SHADER_DIR);
 }
 
-Result<ShaderText> loadShaderText(const fs::path& file) {
+Result<ShaderText> loadShaderText(const fs::path& file, const ShaderDefines& defines) {
+  std::string lines;
+  for (const auto& [name, value] : defines) lines += "#define " + name + " " + value + "\n";
   ShaderText out;
-  if (const Status status = append(out, file, 0); !status) return Error{status.error()};
+  if (const Status status = append(out, file, 0, lines); !status) return Error{status.error()};
   return out;
 }
 
@@ -113,19 +132,22 @@ std::string namedLog(const std::string& log, const std::vector<std::string>& fil
     if (std::regex_search(line, match, kPlace) && match[2].length() < 6) {
       const auto index = std::size_t(std::stoi(match[2].str()));
       if (index < files.size())
-        line = fmt::format("{}{}{}{}{}", match[1].str(), files[index], match[3].str(), match[4].str(),
-                           match.suffix().str());
+        line = match[1].str() + files[index] + match[3].str() + match[4].str() + match.suffix().str();
     }
     out += line + "\n";
   }
   return out;
 }
 
-GlProgram makeProgram(const std::vector<std::string>& stages) {
+GlProgram makeProgram(const std::vector<std::string>& stages, const ShaderDefines& defines) {
   GlProgram program(glCreateProgram());
   std::string names;
+  std::vector<std::string> files;  // of the only stage: where there are more, a number in the log may be any one's
   for (const auto& stage : stages) {
-    const GlShader shader = compile(stage);
+    const auto text = loadShaderText(shaderFolder() / stage, defines);
+    if (!text) throw std::runtime_error(text.error());
+    const GlShader shader = compile(stage, *text);
+    if (stages.size() == 1) files = text->files;
     glAttachShader(program.name(), shader.name());
     names += (names.empty() ? "" : ", ") + stage;
   }
@@ -137,7 +159,7 @@ GlProgram makeProgram(const std::vector<std::string>& stages) {
     GLsizei length = 0;
     glGetProgramInfoLog(program.name(), GLsizei(log.size()), &length, log.data());
     log.resize(std::size_t(length));
-    throw std::runtime_error(fmt::format("shaders {}: {}", names, firstLine(log)));
+    throw std::runtime_error("shaders " + names + ": " + firstError(namedLog(log, files)));
   }
   return program;
 }

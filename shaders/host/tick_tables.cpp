@@ -1,0 +1,271 @@
+#include "shaders/host/tick_tables.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shaders/rules/exchange.h"
+#include "shared/base/assert.h"
+
+namespace spoor {
+namespace {
+
+constexpr int kSize = rules::kTileSize;
+
+// As GLSL's std430 lays them out: ints, one after the other.
+static_assert(sizeof(rules::TileEntry) == 64 && sizeof(rules::TileState) == 48 && sizeof(rules::Block) == 12);
+static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 112 && sizeof(rules::DomainEntry) == 48);
+static_assert(sizeof(rules::TileResult) == 48 && sizeof(rules::GroupCount) == 16);
+static_assert(sizeof(rules::TickHead) == 32 + rules::kSubStepMost * sizeof(rules::SubStepLists));
+static_assert(rules::kSubStepMost == kSubStepLimit);
+
+/// Collects tables as bytes.
+class TableWriter {
+ public:
+  explicit TableWriter(std::vector<std::uint8_t>& bytes) : bytes_(&bytes) {}
+
+  template <typename T>
+  TableRange put(const std::vector<T>& table) {
+    constexpr std::size_t kAlignment = 256;  // the largest that GL may ask for
+    bytes_->resize((bytes_->size() + kAlignment - 1) / kAlignment * kAlignment);
+    const TableRange range{std::int64_t(bytes_->size()),
+                           std::int64_t(std::max<std::size_t>(table.size(), 1) * sizeof(T))};
+    bytes_->resize(bytes_->size() + std::size_t(range.bytes));
+    if (!table.empty()) std::memcpy(bytes_->data() + range.offset, table.data(), table.size() * sizeof(T));
+    return range;
+  }
+
+  GroupList dispatch(std::int64_t groups, const GroupShape& shape) {
+    const int x = int(std::min<std::int64_t>(groups, shape.groups_per_row));
+    const rules::GroupCount size{x, x == 0 ? 0 : int((groups + x - 1) / x), 1, int(groups)};
+    return {int(groups), put(std::vector<rules::GroupCount>{size}).offset, {}};
+  }
+
+  GroupList dispatch(std::vector<rules::Block>& blocks, const GroupShape& shape) {
+    if (shape.reversed) std::ranges::reverse(blocks);
+    GroupList list = dispatch(std::int64_t(blocks.size()), shape);
+    list.blocks = put(blocks);
+    return list;
+  }
+
+ private:
+  std::vector<std::uint8_t>* bytes_;
+};
+
+int groupsFor(std::int64_t count, int group) { return int((count + group - 1) / group); }
+
+/// A tick's tables in the making.
+class TableMaker {
+ public:
+  TableMaker(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan, const GroupShape& shape)
+      : pack_(pack),
+        meshes_(meshes),
+        plan_(plan),
+        shape_(shape),
+        writer_(tables_.bytes),
+        count_(int(plan.active.size())) {}
+
+  TickTables make(std::span<const int> slots) {
+    for (int i = 0; i < count_; ++i) tables_.tile_index.push_back(shape_.reversed ? count_ - 1 - i : i);
+    putTiles(slots);
+    const std::int64_t tiles = count_;
+    tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 16 / shape_.group), shape_);
+    tables_.exchange = writer_.dispatch(groupsFor(tiles * rules::kSlabs * kSize / 4, shape_.group), shape_);
+    tables_.sweep = writer_.dispatch(tiles * 4, shape_);
+    tables_.hash = writer_.dispatch(tiles, shape_);
+    int sweep = 0;
+    covered_before_.assign(std::size_t(count_), 0);
+    for (const SubStep& sub_step : plan_.sub_steps) {
+      tables_.sub_steps.push_back(subStepTables(sub_step, sweep));
+      sweep += sub_step.sweep_count;
+    }
+    putHead();
+    return std::move(tables_);
+  }
+
+ private:
+  /// The shaders' index of a tile, or -1 where it is not active.
+  int indexOf(TileCoordinate at) const {
+    const auto found = std::ranges::lower_bound(plan_.active, at);
+    if (found == plan_.active.end() || *found != at) return -1;
+    return tables_.tile_index[std::size_t(found - plan_.active.begin())];
+  }
+
+  void putTiles(std::span<const int> slots) {
+    entries_.resize(std::size_t(count_));
+    for (int i = 0; i < count_; ++i) {
+      const TileCoordinate at = plan_.active[std::size_t(i)];
+      rules::TileEntry& entry = entries_[std::size_t(tables_.tile_index[std::size_t(i)])];
+      entry.slot = slots[std::size_t(i)];
+      entry.x0 = at.x * kSize;
+      entry.y0 = at.y * kSize;
+      entry.inside_columns = std::min(pack_.width_cells - entry.x0, kSize);
+      entry.inside_rows = std::min(pack_.height_cells - entry.y0, kSize);
+      for (int bit = 0; bit < 9; ++bit) entry.neighbour[bit] = indexOf({at.x + bit % 3 - 1, at.y + bit / 3 - 1});
+    }
+    tables_.tiles = writer_.put(entries_);
+  }
+
+  SubStepTables subStepTables(const SubStep& sub_step, int first_sweep) {
+    SubStepTables step;
+    step.first_step = first_sweep * rules::kMatchingCount;
+    step.sweep_count = sub_step.sweep_count;
+    putDomains(sub_step, step);
+    putBodies(sub_step, step);
+    return step;
+  }
+
+  void putDomains(const SubStep& sub_step, SubStepTables& step) {
+    std::vector<rules::DomainEntry> domains;
+    std::vector<std::int32_t> domain_tiles;
+    std::vector<rules::Block> blocks;
+    std::vector<std::uint8_t> covered(std::size_t(count_), 0);
+    domain_of_body_.assign(sub_step.bodies.size(), -1);
+    for (const Domain& domain : sub_step.domains) {
+      const CellBox& box = domain.box;
+      const int index = int(domains.size());
+      rules::DomainEntry entry{};
+      entry.x0 = box.x0;
+      entry.y0 = box.y0;
+      entry.width = box.x1 - box.x0;
+      entry.rows = box.y1 - box.y0;
+      entry.first_cell = int(step.domain_cells);
+      entry.first_word = int(step.mask_words);
+      entry.first_row = row_count_;
+      entry.first_tile = int(domain_tiles.size());
+      entry.tile_x0 = box.x0 / kSize;
+      entry.tile_y0 = box.y0 / kSize;
+      entry.tile_columns = (box.x1 - 1) / kSize - entry.tile_x0 + 1;
+      domains.push_back(entry);
+      for (int y = entry.tile_y0; y <= (box.y1 - 1) / kSize; ++y)
+        for (int x = entry.tile_x0; x < entry.tile_x0 + entry.tile_columns; ++x) {
+          const int tile = indexOf({x, y});
+          SPOOR_ASSERT(tile >= 0);
+          domain_tiles.push_back(tile);
+          covered[std::size_t(tile)] = 1;
+        }
+      for (int y = 0; y < entry.rows; y += rules::kMaskRows)
+        for (int x = 0; x < groupsFor(entry.width, shape_.group); ++x) blocks.push_back({index, x, y});
+      for (const int body : domain.bodies) domain_of_body_[std::size_t(body)] = index;
+      step.domain_cells += std::int64_t(entry.width) * entry.rows;
+      step.mask_words += std::int64_t(entry.width) * groupsFor(entry.rows, rules::kMaskRows);
+      step.row_chunks += std::int64_t(entry.rows) * groupsFor(entry.width, shape_.group);
+      row_count_ += entry.rows;
+    }
+    step.domains = writer_.put(domains);
+    step.domain_tiles = writer_.put(domain_tiles);
+    step.domain_blocks = writer_.dispatch(blocks, shape_);
+    putCovered(covered, step);
+  }
+
+  /// Tiles whose undersides this sub-step begins anew: all that it or the one before covers, and at first the border's.
+  void putCovered(const std::vector<std::uint8_t>& covered, SubStepTables& step) {
+    std::vector<rules::Block> blocks;
+    for (std::size_t tile = 0; tile < covered.size(); ++tile) {
+      const bool border = entries_[tile].inside_columns < kSize || entries_[tile].inside_rows < kSize;
+      if (covered[tile] == 0 && covered_before_[tile] == 0 && !(border && tables_.sub_steps.empty())) continue;
+      for (int quarter = 0; quarter < 4; ++quarter) blocks.push_back({int(tile), covered[tile], quarter});
+    }
+    step.cover = writer_.dispatch(blocks, shape_);
+    covered_before_ = covered;
+  }
+
+  void putBodies(const SubStep& sub_step, SubStepTables& step) {
+    std::vector<rules::BodyEntry> bodies;
+    std::vector<rules::Block> place, primitives;
+    for (std::size_t i = 0; i < sub_step.bodies.size(); ++i) {
+      if (domain_of_body_[i] < 0) continue;
+      const int index = int(bodies.size());
+      const rules::BodyEntry& entry =
+          bodies.emplace_back(bodyEntry(sub_step.bodies[i], domain_of_body_[i], int(step.point_count)));
+      for (int first = 0; first < entry.vertex_count; first += shape_.group) place.push_back({index, first, 0});
+      const int primitive_count = entry.triangle_count + entry.edge_count;
+      for (int first = 0; first < primitive_count; first += shape_.group) primitives.push_back({index, first, 0});
+      step.point_count += entry.vertex_count;
+      step.primitive_count += primitive_count;
+    }
+    step.bodies = writer_.put(bodies);
+    step.place = writer_.dispatch(place, shape_);
+    step.primitives = writer_.dispatch(primitives, shape_);
+  }
+
+  rules::BodyEntry bodyEntry(const PlacedBody& body, int domain, int first_point) const {
+    const auto mesh_index = std::size_t(pack_.bodies[std::size_t(body.body_index)].mesh_index);
+    const Mesh& mesh = pack_.meshes[mesh_index];
+    const MeshTable::Place& place = meshes_.places[mesh_index];
+    rules::BodyEntry entry{};
+    std::ranges::copy(body.placement.matrix, entry.matrix);
+    entry.within_x = body.placement.within_x;
+    entry.within_y = body.placement.within_y;
+    entry.cell = body.placement.cell;
+    entry.origin_x = body.origin_x;
+    entry.origin_y = body.origin_y;
+    entry.z = body.z_q;
+    entry.x0 = body.box.x0;
+    entry.y0 = body.box.y0;
+    entry.x1 = body.box.x1;
+    entry.y1 = body.box.y1;
+    entry.domain = domain;
+    entry.first_vertex = place.first_vertex;
+    entry.vertex_count = int(mesh.vertices.size());
+    entry.first_point = first_point;
+    entry.first_triangle = place.first_triangle;
+    entry.triangle_count = int(mesh.triangles.size());
+    entry.first_edge = place.first_edge;
+    entry.edge_count = int(mesh.edges.size());
+    return entry;
+  }
+
+  /// The head comes last: it ends in the row flags of all sub-steps.
+  void putHead() {
+    rules::TickHead head{};
+    head.tile_count = count_;
+    head.obstacle_threshold = pack_.obstacle_threshold_q;
+    head.slope_threshold = pack_.slope_threshold_q;
+    head.diagonal_threshold = pack_.diagonal_threshold_q;
+    head.highest = -rules::kHeightLimit;
+    for (rules::SubStepLists& lists : head.lists) {
+      const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
+      lists = {empty, empty, empty};
+    }
+    std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(row_count_) * sizeof(std::int32_t));
+    std::memcpy(bytes.data(), &head, sizeof(head));
+    tables_.head = writer_.put(bytes);
+  }
+
+  const ScenePack& pack_;
+  const MeshTable& meshes_;
+  const TickPlan& plan_;
+  GroupShape shape_;
+  TickTables tables_;
+  TableWriter writer_;
+  int count_;
+  int row_count_ = 0;
+  std::vector<rules::TileEntry> entries_;
+  std::vector<std::uint8_t> covered_before_;
+  std::vector<int> domain_of_body_;
+};
+
+}  // namespace
+
+MeshTable makeMeshTable(const ScenePack& pack) {
+  MeshTable table;
+  for (const Mesh& mesh : pack.meshes) {
+    table.places.push_back({int(table.vertices.size() / 3), int(table.indices.size()), 0});
+    for (const auto& vertex : mesh.vertices) table.vertices.insert(table.vertices.end(), vertex.begin(), vertex.end());
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t index : triangle) table.indices.push_back(std::int32_t(index));
+  }
+  for (std::size_t i = 0; i < pack.meshes.size(); ++i) {
+    table.places[i].first_edge = int(table.indices.size());
+    for (const auto& edge : pack.meshes[i].edges)
+      for (const std::uint32_t index : edge) table.indices.push_back(std::int32_t(index));
+  }
+  return table;
+}
+
+TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
+                          std::span<const int> slots, const GroupShape& shape) {
+  return TableMaker(pack, meshes, plan, shape).make(slots);
+}
+
+}  // namespace spoor

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shaders/sim/tables.h"
+#include "shared/sim/plan.h"
+
+namespace spoor {
+
+/// Meshes of a pack in two flat arrays, as the shaders read them.
+struct MeshTable {
+  struct Place {
+    int first_vertex = 0;
+    int first_triangle = 0;  // offsets in `indices`
+    int first_edge = 0;
+  };
+  std::vector<std::int32_t> vertices;  // [3 * vertices]
+  std::vector<std::int32_t> indices;   // triangles of all meshes, then edges of all meshes
+  std::vector<Place> places;           // [meshes]
+};
+MeshTable makeMeshTable(const ScenePack& pack);
+
+/// How work is cut into groups. None of it changes one bit of what comes out.
+struct GroupShape {
+  int group = 64;              // lanes of a group: 64, 128 or 256
+  int groups_per_row = 65535;  // of a dispatch; GL guarantees 65 535
+  bool reversed = false;       // last tile, body and block first
+};
+
+/// Bytes of the upload, aligned so that they can be bound.
+struct TableRange {
+  std::int64_t offset = 0;
+  std::int64_t bytes = 0;
+};
+
+/// A dispatch: how many groups, where its indirect arguments lie, and its groups' blocks where it has any.
+struct GroupList {
+  int count = 0;
+  std::int64_t arguments = 0;  // offset
+  TableRange blocks;
+};
+
+struct SubStepTables {
+  TableRange bodies, domains, domain_tiles;
+  GroupList cover, place, primitives, domain_blocks;
+  std::int64_t point_count = 0, primitive_count = 0, domain_cells = 0, mask_words = 0, row_chunks = 0;
+  int first_step = 0;  // of the relaxation
+  int sweep_count = 0;
+};
+
+/// Everything that the shaders need to know of a tick, in one piece of bytes.
+struct TickTables {
+  std::vector<std::uint8_t> bytes;
+  TableRange head;   // TickHead and row flags
+  TableRange tiles;  // TileEntry [active tiles]
+  GroupList gather, exchange, sweep, hash;
+  std::vector<SubStepTables> sub_steps;
+  std::vector<int> tile_index;  // [plan.active] where the shaders have that tile
+};
+
+/// @param slots  [plan.active] of the tiles in the pool
+TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
+                          std::span<const int> slots, const GroupShape& shape);
+
+}  // namespace spoor

@@ -1,0 +1,127 @@
+#include "shaders/host/tile_pool.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shared/base/assert.h"
+#include "shared/codec/tile_codec.h"
+
+namespace spoor {
+namespace {
+
+constexpr std::int64_t kPlaneBytes = sizeof(PlaneCells);
+
+}  // namespace
+
+TilePool::TilePool(std::int64_t block_bytes, int tile_limit, std::function<void(const std::string&)> say)
+    : most_slots_(int(std::min<std::int64_t>(block_bytes / kPlaneBytes, 1 << 19))),  // cells are counted in ints
+      tile_limit_(std::clamp(tile_limit, 1, most_slots_)),
+      say_(std::move(say)),
+      height_("the pool's heights", block_bytes, GrowingBuffer::Content::kept),
+      bedrock_("the pool's bedrock", block_bytes, GrowingBuffer::Content::kept) {
+  SPOOR_ASSERT(std::size_t(most_slots_) >= kTickTilesLimit);
+}
+
+Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32_t tick) {
+  std::vector<int> slots(tiles.size(), -1), fresh;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const auto found = slot_of_.find(tiles[i]);
+    if (found == slot_of_.end()) {
+      fresh.push_back(int(i));
+      continue;
+    }
+    slots[i] = found->second;
+    slots_[std::size_t(found->second)].used_at = tick;
+  }
+  if (Status status = makeRoom(int(fresh.size()), tick); !status) return Error{status.error()};
+  for (const int i : fresh) {
+    const int slot = slots[std::size_t(i)] = free_.back();
+    free_.pop_back();
+    slots_[std::size_t(slot)] = {tiles[std::size_t(i)], tick};
+    slot_of_.emplace(tiles[std::size_t(i)], slot);
+  }
+  copyToDevice(tiles, slots, std::move(fresh));
+  return slots;
+}
+
+void TilePool::forget() {
+  slot_of_.clear();
+  free_.clear();
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    slots_[slot] = {};
+    free_.push_back(int(slot));
+  }
+  std::ranges::sort(free_, std::greater<>());
+}
+
+/// Frees or adds slots until there are `missing` free ones.
+Status TilePool::makeRoom(int missing, std::int32_t tick) {
+  int lacking = missing - int(free_.size());
+  if (lacking <= 0) return {};
+  const int in_use_now = int(std::ranges::count(slots_, tick, &Slot::used_at));
+  const int limit = std::max(tile_limit_, in_use_now + missing);
+  SPOOR_ASSERT(limit <= most_slots_);
+  const int wanted = std::min(std::max(int(slots_.size()) + lacking, 2 * int(slots_.size())), limit);
+  if (wanted > int(slots_.size())) {
+    if (Status status = height_.reserve(wanted * kPlaneBytes); !status) return status;
+    if (Status status = bedrock_.reserve(wanted * kPlaneBytes); !status) return status;
+    const int before = int(slots_.size());
+    slots_.resize(std::size_t(wanted));
+    for (int slot = before; slot < wanted; ++slot) free_.push_back(slot);
+    std::ranges::sort(free_, std::greater<>());
+    lacking = missing - int(free_.size());
+  }
+  if (lacking > 0) evict(lacking, tick);
+  return {};
+}
+
+void TilePool::evict(int count, std::int32_t tick) {
+  if (evicted_count_ == 0)
+    say_("gl: the tile pool is full at " + std::to_string(slots_.size()) +
+         " tiles; those not used for longest stay on the host until they are active again");
+  std::vector<int> idle;
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot)
+    if (slots_[slot].tile != nullptr && slots_[slot].used_at != tick) idle.push_back(int(slot));
+  SPOOR_ASSERT(int(idle.size()) >= count);
+  std::ranges::nth_element(idle, idle.begin() + (count - 1), {},
+                           [&](int slot) { return slots_[std::size_t(slot)].used_at; });
+  for (int i = 0; i < count; ++i) {
+    Slot& slot = slots_[std::size_t(idle[std::size_t(i)])];
+    slot_of_.erase(slot.tile);
+    slot = {};
+    free_.push_back(idle[std::size_t(i)]);
+  }
+  std::ranges::sort(free_, std::greater<>());
+  evicted_count_ += count;
+}
+
+/// One copy for each stretch of slots that follow one another.
+void TilePool::copyToDevice(std::span<Tile* const> tiles, std::span<const int> slots, std::vector<int> fresh) {
+  constexpr std::size_t kTilesAtOnce = 256;
+  std::ranges::sort(fresh, {}, [&](int i) { return slots[std::size_t(i)]; });
+  std::vector<PlaneCells> cells;
+  for (std::size_t begin = 0; begin < fresh.size();) {
+    const int first_slot = slots[std::size_t(fresh[begin])];
+    std::size_t end = begin;
+    while (end < fresh.size() && end - begin < kTilesAtOnce &&
+           slots[std::size_t(fresh[end])] == first_slot + int(end - begin))
+      ++end;
+    const auto copy = [&](const GrowingBuffer& to, auto plane_of) {
+      cells.resize(end - begin);
+      for (std::size_t i = begin; i < end; ++i) cells[i - begin] = plane_of(*tiles[std::size_t(fresh[i])]);
+      const std::int64_t bytes = std::int64_t(cells.size()) * kPlaneBytes;
+      glNamedBufferSubData(to.name(), first_slot * kPlaneBytes, bytes, cells.data());
+      copied_bytes_ += bytes;
+    };
+    copy(height_, [](const Tile& tile) { return tile.height(); });
+    copy(bedrock_, [](const Tile& tile) { return *tile.bedrock; });
+    begin = end;
+  }
+}
+
+std::int64_t TilePool::hostBytes() const {
+  return std::int64_t(slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(int) +
+                      slot_of_.size() * 4 * sizeof(void*) + slot_of_.bucket_count() * sizeof(void*));
+}
+
+}  // namespace spoor

@@ -1,0 +1,29 @@
+// Stage depth: lowers the undersides beneath small primitives, and puts large ones on a list.
+// In: bodies, points, indices, blocks (owner: body; x: first primitive). Out: underside, large, tick.lists.
+// A lane takes a primitive. Twin: depth.cpp.
+#version 450 core
+#include "../rules/raster.h"
+#include "domains.glsl"
+#include "primitives.glsl"
+#include "tick.glsl"
+
+layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; };
+layout(std430, binding = kBindLarge) writeonly buffer Large { ivec2 large[]; };
+
+const int kRowsOfSmall = 8;  // more rows than this keep a lane's neighbours waiting
+
+void main() {
+  if (groupIndex() >= group_count) return;
+  Block block = blocks[groupIndex()];
+  int primitive = block.x + lane();
+  if (primitive >= bodies[block.owner].triangle_count + bodies[block.owner].edge_count) return;
+  Primitive p = primitiveAt(block.owner, primitive);
+  int rows = p.last - p.first + 1;
+  if (rows <= kRowsOfSmall) {
+    drawRows(p, p.first, p.last + 1, 1);
+    return;
+  }
+  int entry = atomicAdd(tick.lists[sub_step].large.used, 1);
+  atomicMax(tick.lists[sub_step].large.y, ((entry + 1) * kLargeParts + kDispatchColumns - 1) / kDispatchColumns);
+  large[entry] = ivec2(block.owner, primitive);
+}

@@ -1,0 +1,56 @@
+// Stage penetration: which cells a body overlaps, and by how much; lists the rows that have any.
+// In: blocks (owner: domain; x: chunk of columns; y: first row of 32), height, bedrock, underside.
+// Out: overlap, free mask, row flags, row chunks, tick. A lane takes 32 cells of a column. Twin: penetration.cpp.
+#version 450 core
+#include "../rules/penetration.h"
+#include "domains.glsl"
+#include "tick.glsl"
+
+layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; };
+layout(std430, binding = kBindHeight) readonly buffer Height { int height[]; };
+layout(std430, binding = kBindBedrock) readonly buffer Bedrock { int bedrock[]; };
+layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
+layout(std430, binding = kBindOverlap) writeonly buffer Overlap { int overlap[]; };
+layout(std430, binding = kBindFreeMask) writeonly buffer FreeMask { uint free_mask[]; };
+layout(std430, binding = kBindRowChunks) writeonly buffer RowChunks { RowChunk row_chunks[]; };
+
+shared int group_count_penetrating;
+
+void listRow(int domain, int row) {
+  int flag = domains[domain].first_row + row;
+  if ((row_flags[flag] & kRowPenetrates) != 0 || (atomicOr(row_flags[flag], kRowPenetrates) & kRowPenetrates) != 0)
+    return;
+  int chunks = (domains[domain].width + kGroup - 1) / kGroup;
+  int first = atomicAdd(tick.lists[sub_step].rows.used, chunks);
+  atomicMax(tick.lists[sub_step].rows.y, (first + chunks + kDispatchColumns - 1) / kDispatchColumns);
+  for (int i = 0; i < chunks; ++i) row_chunks[first + i] = RowChunk(domain, row, i);
+}
+
+void main() {
+  if (groupIndex() >= group_count) return;
+  if (lane() == 0) group_count_penetrating = 0;
+  barrier();
+  Block block = blocks[groupIndex()];
+  DomainEntry domain = domains[block.owner];
+  int column = block.x * kGroup + lane();
+  if (column < domain.width) {
+    uint free = 0u;
+    int penetrating = 0;
+    int end = min(kMaskRows, domain.rows - block.y);
+    for (int i = 0; i < end; ++i) {
+      int row = block.y + i;
+      int at = tileCell(block.owner, domain.x0 + column, domain.y0 + row);
+      int value = cellOverlap(height[at], bedrock[at], underside[at], tick.obstacle_threshold);
+      overlap[domain.first_cell + row * domain.width + column] = value;
+      if (value == kFree) free |= 1u << uint(i);
+      if (value > 0) {
+        ++penetrating;
+        listRow(block.owner, row);
+      }
+    }
+    free_mask[domain.first_word + block.y / kMaskRows * domain.width + column] = free;
+    if (penetrating != 0) atomicAdd(group_count_penetrating, penetrating);
+  }
+  barrier();
+  if (lane() == 0 && group_count_penetrating != 0) atomicAdd(tick.penetrating_cells, group_count_penetrating);
+}

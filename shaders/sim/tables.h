@@ -1,0 +1,167 @@
+// What the host tells the compute shaders about a tick, and what they tell it: one text for C++ and GLSL.
+// Every struct is made of 4-byte ints, so that both languages lay it out alike.
+#ifndef SPOOR_SIM_TABLES_H
+#define SPOOR_SIM_TABLES_H
+#include "../rules/limits.h"
+
+SPOOR_RULES_BEGIN
+
+// Storage bindings; no shader uses more than 12 of them. Cells of tiles are indexed by active tile, those of domains by
+// DomainEntry::first_cell.
+RULE_CONST kBindTick = 0;            // Tick
+RULE_CONST kBindTiles = 1;           // TileEntry [active tiles]
+RULE_CONST kBindTileStates = 2;      // TileState [active tiles]
+RULE_CONST kBindHeight = 3;          // int [active tiles * kTileCells]
+RULE_CONST kBindBedrock = 4;         // the same
+RULE_CONST kBindUnderside = 5;       // the same; only where a tile is covered
+RULE_CONST kBindBlocks = 6;          // Block [groups of the dispatch]
+RULE_CONST kBindDomains = 7;         // DomainEntry [domains of the sub-step]
+RULE_CONST kBindDomainTiles = 8;     // int: the active tile of every tile that a domain meets
+RULE_CONST kBindOverlap = 9;         // int [domain cells]
+RULE_CONST kBindTarget = 10;         // int [domain cells]: index in the domain's box, or kNoTarget
+RULE_CONST kBindRequestedLow = 11;   // uint [domain cells]: soil that wants to come to a cell, 64 bits in two words;
+RULE_CONST kBindRequestedHigh = 12;  // 0 everywhere between sub-steps
+RULE_CONST kBindGrantedLow = 13;     // the same: what was let in where not all fits
+RULE_CONST kBindGrantedHigh = 14;
+RULE_CONST kBindRowChunks = 15;  // RowChunk [groups of the dispatch]
+// Stages that do not need the planes of displacement use their bindings for:
+RULE_CONST kBindBodies = 9;        // depth: BodyEntry [bodies of the sub-step]
+RULE_CONST kBindPoints = 10;       // depth: int [3 * points of the sub-step's bodies], as RasterPoint
+RULE_CONST kBindVertices = 11;     // depth: int [3 * vertices of all meshes]
+RULE_CONST kBindIndices = 12;      // depth: int, the triangles of all meshes (3 each) and their edges (2 each)
+RULE_CONST kBindLarge = 13;        // depth: ivec2 (body, primitive): those worth groups of their own
+RULE_CONST kBindFreeMask = 13;     // nearest: uint [words of the domains]: a column's 32 cells, bit set: free
+RULE_CONST kBindNearestRow = 14;   // nearest: int [domain cells]: of the same column, in rows of the box, or kNoFreeRow
+RULE_CONST kBindReceivers = 13;    // displace: RowChunk: rows that hold targets
+RULE_CONST kBindNextHeight = 6;    // relax: int [active tiles * kTileCells]: heights after a fused sweep
+RULE_CONST kBindPoolHeight = 9;    // gather, hash: int [slots * kTileCells]: heights before this tick
+RULE_CONST kBindPoolBedrock = 10;  // gather: the same
+RULE_CONST kBindResults = 11;      // hash: TileResult [active tiles]
+RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tiles' boxes, one after the other
+
+RULE_CONST kSubStepMost = 32;
+RULE_CONST kSlabRows = 8;  // what relax skips where nothing has changed
+RULE_CONST kSlabs = kTileSize / kSlabRows;
+RULE_CONST kMaskRows = 32;          // rows of a free mask's word, and of a block of a domain
+RULE_CONST kLargeParts = 4;         // groups that share a large primitive
+RULE_CONST kDispatchColumns = 256;  // groups per row of a dispatch whose size the GPU finds
+
+RULE_CONST kRowPenetrates = 1;
+RULE_CONST kRowReceives = 2;
+
+/// Size of an indirect dispatch, and how many of its groups have work.
+struct GroupCount {
+  int x;
+  int y;
+  int z;
+  int used;
+};
+
+/// Lists that the GPU makes in a sub-step, in no particular order.
+struct SubStepLists {
+  GroupCount large;      // kBindLarge
+  GroupCount rows;       // kBindRowChunks
+  GroupCount receivers;  // kBindReceivers
+};
+
+/// The head of the tick's table; row flags of all sub-steps' domains follow it (DomainEntry::first_row).
+struct TickHead {
+  int tile_count;
+  int obstacle_threshold;
+  int slope_threshold;
+  int diagonal_threshold;
+  // From here on written by the GPU.
+  int highest;            // of all heights so far in this tick
+  int penetrating_cells;  // of all sub-steps
+  int slabs_visited;      // by the relaxation; each stands for kSlabRows * kTileSize / 2 pairs
+  int staged_cells;
+  SubStepLists lists[kSubStepMost];
+};
+
+/// An active tile.
+struct TileEntry {
+  int slot;  // in the pool
+  int x0;    // its first cell
+  int y0;
+  int inside_columns;  // how much of it lies in the world
+  int inside_rows;
+  int neighbour[9];  // active tile at (dy + 1) * 3 + (dx + 1), or -1; 4 is the tile itself
+  int unused[2];
+};
+
+/// What the tick knows of an active tile.
+struct TileState {
+  int covered;             // may an underside limit what its cells take? If not, its undersides are not filled
+  int changed_at[kSlabs];  // step of the relaxation at which a slab of rows last changed
+  int unused[3];
+};
+
+/// One group's share of a table: what `owner` means depends on the stage.
+struct Block {
+  int owner;
+  int x;
+  int y;
+};
+
+/// Cells [chunk * group size, ...) of one row of a domain.
+struct RowChunk {
+  int domain;
+  int row;
+  int chunk;
+};
+
+/// A body in one sub-step.
+struct BodyEntry {
+  int matrix[9];  // rules/place.h, Placement
+  int within_x;
+  int within_y;
+  int cell;
+  int origin_x;
+  int origin_y;
+  int z;
+  int x0;  // its box; empty ones are left out
+  int y0;
+  int x1;
+  int y1;
+  int domain;
+  int first_vertex;  // of its mesh, in kBindVertices
+  int vertex_count;
+  int first_point;     // in kBindPoints
+  int first_triangle;  // int in kBindIndices
+  int triangle_count;
+  int first_edge;  // int in kBindIndices
+  int edge_count;
+  int unused;
+};
+
+/// A search domain in one sub-step.
+struct DomainEntry {
+  int x0;
+  int y0;
+  int width;
+  int rows;
+  int first_cell;  // in the planes of domains
+  int first_word;  // in kBindFreeMask; row-major words of the box
+  int first_row;   // row flags
+  int first_tile;  // in kBindDomainTiles
+  int tile_x0;     // the domain's tiles, in tiles
+  int tile_y0;
+  int tile_columns;
+  int unused;
+};
+
+/// What a tick did to an active tile.
+struct TileResult {
+  int x0;  // the box of changed cells [x0, x1) x [y0, y1); empty: none
+  int y0;
+  int x1;
+  int y1;
+  uint hash_low[2];   // sums of the low and high 16 bits of the cells' low lanes (rules/mix.h)
+  uint hash_high[2];  // and of their high lanes
+  uint height[2];     // sums of the low and high 16 bits of height + 2^30
+  int first_staged;   // the box's differences in kBindStaging, row-major
+  int unused;
+};
+
+SPOOR_RULES_END
+#endif

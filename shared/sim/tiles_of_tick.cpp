@@ -1,0 +1,77 @@
+// Where a tick's tiles come from and how they leave it, the same for every backend.
+#include <algorithm>
+
+#include "shared/base/thread_pool.h"
+#include "shared/sim/backend.h"
+
+namespace spoor {
+namespace {
+
+constexpr int kSize = rules::kTileSize;
+
+/// The tile and those neighbours whose common border lies within `reach` cells of a changed cell.
+WakeMask wakeMaskOf(const TileChange& change, int reach) {
+  if (change.width == 0) return 0;
+  const bool side[3][2] = {{change.x < reach, change.y < reach},
+                           {true, true},
+                           {change.x + change.width > kSize - reach, change.y + change.height > kSize - reach}};
+  WakeMask mask = 0;
+  for (int bit = 0; bit < 9; ++bit)
+    if (side[bit % 3][0] && side[bit / 3][1]) mask = WakeMask(mask | 1 << bit);
+  return mask;
+}
+
+}  // namespace
+
+std::vector<Tile*> takeTiles(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool,
+                             std::vector<Tile*>& made_live) {
+  std::vector<Tile*> tiles(plan.active.size());
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    tiles[i] = state.tiles.find(plan.active[i]);
+    if (tiles[i] == nullptr) missing.push_back(i);
+  }
+  std::vector<std::unique_ptr<Tile>> fresh(missing.size());
+  pool.forEach(int(missing.size()), [&](int i, int) { fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick); });
+  made_live.clear();
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    tiles[missing[i]] = &state.tiles.insert(std::move(fresh[i]));
+    made_live.push_back(tiles[missing[i]]);
+  }
+  return tiles;
+}
+
+std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, const std::vector<Tile*>& tiles,
+                                   const std::vector<Tile*>& made_live, std::vector<TileOutcome> outcomes,
+                                   WorldState& state) {
+  const int reach = std::clamp(sweeps_per_tick, 1, kSize);
+  std::vector<TileChange> changes;
+  auto next_made = made_live.begin();
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    Tile& tile = *tiles[i];
+    TileChange& change = outcomes[i].change;
+    const bool is_new = next_made != made_live.end() && *next_made == &tile;
+    if (is_new) ++next_made;
+    const bool changed = change.width > 0;
+    if (!changed && !is_new && tile.wake_mask == 0) continue;
+    const std::uint64_t hash_before = is_new ? 0 : tileStateHash(tile);
+    const std::int64_t ground_before = is_new ? 0 : tile.ground;
+    change.at = tile.at;
+    change.base_version = is_new ? kDormantVersion : tile.version_tick;
+    change.new_version = tile.version_tick = plan.tick;
+    if (changed) {
+      tile.hash = outcomes[i].hash;
+      tile.ground = outcomes[i].ground;
+    }
+    change.hash = tile.hash;
+    change.wake_mask = wakeMaskOf(change, reach);
+    state.tiles.setWake(tile, change.wake_mask);
+    state.tiles_hash += tileStateHash(tile) - hash_before;
+    state.ledger.ground += tile.ground - ground_before;
+    if (is_new) state.ledger.initial += tile.initial;
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+}  // namespace spoor
