@@ -103,6 +103,12 @@ class GlBackend final : public Backend {
     return {};
   }
 
+  void forget() override {
+    device_->tiles.forget();
+    uncollected_.clear();
+    loaded_ = nullptr;
+  }
+
   BackendMemory memory() const override {
     return {device_->tiles.hostBytes() + device_->results.bytes() + device_->changed_cells[0].bytes() +
                 device_->changed_cells[1].bytes() + std::int64_t(tables_.bytes.capacity()),

@@ -32,7 +32,7 @@ struct BackendMemory {
   std::int64_t device_bytes = 0;
 };
 
-/// Runs stages 4 to 9 of planned ticks on one state. Backends differ in schedule only: the same state and plan give the
+/// Runs stages 4 to 9 of planned ticks, on one state until forget(). Backends differ in schedule only: the same state and plan give the
 /// same bits. One thread at a time, any thread.
 class Backend {
  public:
@@ -50,6 +50,9 @@ class Backend {
   /// its changes. One run may be uncollected when the next one begins (asserted).
   /// Errors: the device is lost; the state is then of no further use.
   [[nodiscard]] virtual Status collect(WorldState& state, std::vector<TileChange>& changes) = 0;
+
+  /// Drops everything kept of a state, runs not collected too: the next run may be on another one.
+  virtual void forget() = 0;
 
   virtual BackendMemory memory() const = 0;
 };

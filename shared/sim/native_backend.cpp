@@ -53,6 +53,8 @@ class NativeBackend final : public Backend {
 
   Status collect(WorldState&, std::vector<TileChange>&) override { return {}; }  // run() has done it all
 
+  void forget() override {}  // a tick starts from the state alone
+
   BackendMemory memory() const override {
     std::size_t cells = area_.height.capacity() + area_.bedrock.capacity() + area_.underside.capacity() +
                         area_.lowest_underside.capacity() + area_.last_change.capacity() + underside_before_.capacity();

@@ -8,7 +8,9 @@ Simulation::Simulation(const BaseTerrain& base, const PackId& id, std::unique_pt
     : Simulation(base, initialState(id, base), std::move(backend)) {}
 
 Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend)
-    : base_(&base), reach_q_(bodyReaches(base.pack())), backend_(std::move(backend)), state_(std::move(state)) {}
+    : base_(&base), reach_q_(bodyReaches(base.pack())), backend_(std::move(backend)), state_(std::move(state)) {
+  backend_->forget();
+}
 
 Result<TickResult> Simulation::step(std::span<const Pose> poses) {
   if (Status status = begin(poses); !status) return Error{status.error()};
