@@ -60,8 +60,9 @@ class GlBackend final : public Backend {
 
   Result<TickEffect> run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
     SPOOR_ASSERT(uncollected_.size() < 2);
-    if (device_->tiles.residentCount() == 0 && !uncollected_.empty())
+    if (failed_ && !uncollected_.empty())
       return Error{"gl: after a failed tick the one before it must be collected first"};
+    failed_ = false;
     TickEffect effect;
     if (plan.active.empty()) {
       uncollected_.emplace_back();
@@ -73,7 +74,8 @@ class GlBackend final : public Backend {
     const std::vector<Tile*> tiles = takeTiles(plan, base, state, pool_, made_live);
     Status done = compute(plan, base.pack(), tiles, effect);
     if (!done) {
-      device_->tiles.forget();  // the pool may be a tick ahead of the state
+      device_->tiles.forget();  // the pool may be a tick ahead of the state, and the state a tick ahead of its cells
+      failed_ = true;
       for (Tile* tile : made_live) state.tiles.remove(*tile);
       return Error{"tick " + std::to_string(plan.tick) + ": " + done.error()};
     }
@@ -140,7 +142,7 @@ class GlBackend final : public Backend {
     clock.begin();
     if (loaded_ != &pack) {
       meshes_ = makeMeshTable(pack);
-      if (Status status = stages.load(meshes_); !status) return status;
+      if (Status status = stages.load(pack, meshes_); !status) return status;
       loaded_ = &pack;
     }
     auto slots = device_->tiles.hold(tiles, plan.tick);
@@ -256,6 +258,7 @@ class GlBackend final : public Backend {
   rules::TickHead head_{};  // of the last tick, as the stages left it
   std::deque<Uncollected> uncollected_;
   int next_readback_ = 0;
+  bool failed_ = false;  // the last run did
 };
 
 Result<std::unique_ptr<Backend>> openBackend(const GlOptions& options) {

@@ -34,6 +34,7 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       skip_settled_(skip_settled),
       gather_(program("gather", shape.group)),
       cover_(program("cover", shape.group)),
+      ceiling_(program("ceiling", shape.group)),
       place_(program("place", shape.group)),
       depth_(program("depth", shape.group)),
       depth_large_(program("depth_large", shape.group)),
@@ -72,7 +73,10 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       results_("the tiles' results", limits.storage_block_bytes),
       staging_("the changed cells", limits.storage_block_bytes) {}
 
-Status GlStages::load(const MeshTable& meshes) {
+Status GlStages::load(const ScenePack& pack, const MeshTable& meshes) {
+  slope_threshold_ = pack.slope_threshold_q;
+  diagonal_threshold_ = pack.diagonal_threshold_q;
+  obstacle_threshold_ = pack.obstacle_threshold_q;
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
     if (Status status = to.reserve(std::int64_t(table.size()) * kCellBytes); !status) return status;
     if (!table.empty()) glNamedBufferSubData(to.name(), 0, std::int64_t(table.size()) * kCellBytes, table.data());
@@ -172,7 +176,13 @@ void GlStages::depth(const SubStepTables& step, int sub_step) {
   use(cover_, sub_step);
   setUniform(2, step.first_step);
   dispatch(step.cover);
-  if (step.primitives.count == 0) return;
+  if (step.primitives.count > 0) drawBodies(step, sub_step);
+  use(ceiling_, sub_step);
+  setUniform(2, step.first_step);
+  dispatch(step.cover);
+}
+
+void GlStages::drawBodies(const SubStepTables& step, int sub_step) {
   bindTable(rules::kBindBodies, step.bodies);
   bindTable(rules::kBindDomains, step.domains);
   bindTable(rules::kBindDomainTiles, step.domain_tiles);
@@ -252,6 +262,9 @@ void GlStages::sweepPlain(int first_step) {
     setUniform(2, first_step + matching);
     setUniform(3, matching & 1);
     setUniform(4, skip_settled_ ? 1 : 0);
+    setUniform(5, int(tick_->tile_index.size()));
+    setUniform(6, matching < rules::kMatchDiagonal ? slope_threshold_ : diagonal_threshold_);
+    setUniform(7, obstacle_threshold_);
     dispatch(tick_->exchange);
   }
 }

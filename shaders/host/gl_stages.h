@@ -26,8 +26,8 @@ class GlStages {
   /// Throws std::runtime_error where a shader does not compile or link.
   GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled);
 
-  /// Copies a pack's meshes to the device. Errors: too large for it.
-  [[nodiscard]] Status load(const MeshTable& meshes);
+  /// Takes a pack's thresholds, and copies its meshes to the device. Errors: too large for it.
+  [[nodiscard]] Status load(const ScenePack& pack, const MeshTable& meshes);
 
   /// Makes room for a tick and copies its tables to the device. The tables must live until the tick's last stage.
   /// Errors: the device has not the memory.
@@ -64,6 +64,7 @@ class GlStages {
   void dispatchListed(std::int64_t arguments);
   void bindTable(int binding, const TableRange& range) const;
   void bindCells() const;
+  void drawBodies(const SubStepTables& step, int sub_step);
   void sweepPlain(int first_step);
   void sweepFused(int first_step);
 
@@ -72,7 +73,8 @@ class GlStages {
   const TickTables* tick_ = nullptr;
   std::int64_t dispatch_count_ = 0;
   int current_ = 0;  // which of height_ holds the heights
-  GlProgram gather_, cover_, place_, depth_, depth_large_, penetration_, nearest_columns_, nearest_search_,
+  int slope_threshold_ = 0, diagonal_threshold_ = 0, obstacle_threshold_ = 0;
+  GlProgram gather_, cover_, ceiling_, place_, depth_, depth_large_, penetration_, nearest_columns_, nearest_search_,
       displace_request_, displace_take_, displace_give_, exchange_along_, sweep_, hash_;
   std::array<GlProgram, 3> exchange_across_;  // shift 0, 1, -1
   GrowingBuffer upload_, vertices_, indices_, points_, large_;

@@ -12,7 +12,7 @@ namespace {
 constexpr int kSize = rules::kTileSize;
 
 // As GLSL's std430 lays them out: ints, one after the other.
-static_assert(sizeof(rules::TileEntry) == 64 && sizeof(rules::TileState) == 48 && sizeof(rules::Block) == 12);
+static_assert(sizeof(rules::TileEntry) == 64 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 112 && sizeof(rules::DomainEntry) == 48);
 static_assert(sizeof(rules::TileResult) == 48 && sizeof(rules::GroupCount) == 16);
 static_assert(sizeof(rules::TickHead) == 32 + rules::kSubStepMost * sizeof(rules::SubStepLists));
@@ -69,7 +69,7 @@ class TableMaker {
     putTiles(slots);
     const std::int64_t tiles = count_;
     tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 16 / shape_.group), shape_);
-    tables_.exchange = writer_.dispatch(groupsFor(tiles * rules::kSlabs * kSize / 4, shape_.group), shape_);
+    tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
     tables_.sweep = writer_.dispatch(tiles * 4, shape_);
     tables_.hash = writer_.dispatch(tiles, shape_);
     int sweep = 0;
@@ -163,7 +163,7 @@ class TableMaker {
     for (std::size_t tile = 0; tile < covered.size(); ++tile) {
       const bool border = entries_[tile].inside_columns < kSize || entries_[tile].inside_rows < kSize;
       if (covered[tile] == 0 && covered_before_[tile] == 0 && !(border && tables_.sub_steps.empty())) continue;
-      for (int quarter = 0; quarter < 4; ++quarter) blocks.push_back({int(tile), covered[tile], quarter});
+      for (int slab = 0; slab < rules::kSlabs; ++slab) blocks.push_back({int(tile), slab, 0});
     }
     step.cover = writer_.dispatch(blocks, shape_);
     covered_before_ = covered;

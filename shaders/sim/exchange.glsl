@@ -1,4 +1,6 @@
-// Stage relax: what both of its plain passes share. A lane takes the pairs that begin in four columns of a slab's rows.
+// Stage relax: what both of its plain passes share. A lane takes the pairs that begin in four columns of a tile.
+// Software renderers run both sides of every branch and leave loops only: lanes go from one unsettled slab to the next,
+// rather than past the settled ones.
 #ifndef SPOOR_SIM_EXCHANGE_GLSL
 #define SPOOR_SIM_EXCHANGE_GLSL
 #include "../rules/exchange.h"
@@ -12,25 +14,38 @@ layout(std430, binding = kBindUnderside) readonly buffer Underside { ivec4 under
 layout(location = 2) uniform int step;
 layout(location = 3) uniform int parity;        // of the pairs' first cells
 layout(location = 4) uniform int skip_settled;  // 0: visit every pair
+layout(location = 5) uniform int tile_count;
+layout(location = 6) uniform int threshold;
+layout(location = 7) uniform int obstacle_threshold;
 
 const int kRowQuads = kTileSize / 4;
 const int kTileQuads = kTileCells / 4;
-const int kTileLanes = kSlabs * kRowQuads;
 
-/// Is there nothing in a slab that this step could move, as far as the slab itself goes? Not active: nothing.
-bool settled(int tile, int slab) {
-  return tile < 0 || skip_settled != 0 && tile_states[tile].changed_at[slab] < step - (kMatchingCount - 1);
+/// A slab whose cells a lane's pairs may have; -1: not active.
+struct Slab {
+  int tile;
+  int slab;
+  int ceiling;
+};
+
+Slab slabAt(int tile, int slab) { return Slab(tile, slab, tile < 0 ? kNoUnderside : tile_states[tile].ceiling[slab]); }
+
+/// Is there nothing in it that this step could move, as far as the slab itself goes?
+bool settled(Slab slab) {
+  return slab.tile < 0 ||
+         skip_settled != 0 && tile_states[slab.tile].changed_at[slab.slab] < step - (kMatchingCount - 1);
 }
 
-bool covered(int tile) { return tile >= 0 && tile_states[tile].covered != 0; }
+void markChanged(Slab slab) { tile_states[slab.tile].changed_at[slab.slab] = step; }
 
-/// Is there a height from which the height limit could stop soil from coming?
-bool nearLimit() { return tick.highest + tick.obstacle_threshold >= kNoUnderside; }
+/// The lowest underside from which soil can be stopped, now that no cell rises above the highest of all.
+bool limits(int ceiling) { return ceiling <= tick.highest + obstacle_threshold; }
+
+ivec4 undersides(Slab slab, int at) { return slab.ceiling < kNoUnderside ? underside[at] : ivec4(kNoUnderside); }
 
 ivec4 roomsBeneath(ivec4 cells, ivec4 under) {
-  return ivec4(
-      roomBeneath(cells.x, under.x, tick.obstacle_threshold), roomBeneath(cells.y, under.y, tick.obstacle_threshold),
-      roomBeneath(cells.z, under.z, tick.obstacle_threshold), roomBeneath(cells.w, under.w, tick.obstacle_threshold));
+  return ivec4(roomBeneath(cells.x, under.x, obstacle_threshold), roomBeneath(cells.y, under.y, obstacle_threshold),
+               roomBeneath(cells.z, under.z, obstacle_threshold), roomBeneath(cells.w, under.w, obstacle_threshold));
 }
 
 #endif

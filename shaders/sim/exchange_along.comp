@@ -2,15 +2,12 @@
 // In: tiles, bedrock, underside. In and out: height, tile states. Twin: relax.cpp, exchangeAlong.
 #version 450 core
 #include "exchange.glsl"
-#include "tick.glsl"
-
-int threshold;
 
 /// Four cells; pairs are (x, y) and (z, w). Do any move?
-bool exchangeEven(int at, bool beneath, bool under_body) {
+bool exchangeEven(int at, Slab slab, bool beneath) {
   ivec4 cells = height[at];
   ivec4 soil = cells - bedrock[at];
-  ivec4 room = beneath ? roomsBeneath(cells, under_body ? underside[at] : ivec4(kNoUnderside)) : ivec4(kHeightLimit);
+  ivec4 room = beneath ? roomsBeneath(cells, undersides(slab, at)) : ivec4(kHeightLimit);
   int first = pairFlow(cells.x, cells.y, threshold, soil.x, soil.y, room.x, room.y);
   int second = pairFlow(cells.z, cells.w, threshold, soil.z, soil.w, room.z, room.w);
   if ((first | second) == 0) return false;
@@ -18,54 +15,58 @@ bool exchangeEven(int at, bool beneath, bool under_body) {
   return true;
 }
 
-/// Pairs are (y, z) and (w, x of the next four); no next: -1.
-bool exchangeOdd(int at, int next, bool beneath, bool under_body, bool next_under_body) {
+/// Pairs are (y, z), and (w, x of the next four) where those are active.
+bool exchangeOdd(int at, int next_at, Slab slab, Slab next, bool beneath) {
   ivec4 cells = height[at];
   ivec4 soil = cells - bedrock[at];
-  ivec4 room = beneath ? roomsBeneath(cells, under_body ? underside[at] : ivec4(kNoUnderside)) : ivec4(kHeightLimit);
+  ivec4 room = beneath ? roomsBeneath(cells, undersides(slab, at)) : ivec4(kHeightLimit);
   int inner = pairFlow(cells.y, cells.z, threshold, soil.y, soil.z, room.y, room.z);
   if (inner != 0) {
     height[at].y = cells.y - inner;
     height[at].z = cells.z + inner;
   }
-  if (next < 0) return inner != 0;
-  int beyond = height[next].x;
-  int beyond_under = next_under_body ? underside[next].x : kNoUnderside;
-  int beyond_room = beneath ? roomBeneath(beyond, beyond_under, tick.obstacle_threshold) : kHeightLimit;
-  int outer = pairFlow(cells.w, beyond, threshold, soil.w, beyond - bedrock[next].x, room.w, beyond_room);
+  if (next.tile < 0) return inner != 0;
+  int beyond = height[next_at].x;
+  int beyond_room = beneath ? roomBeneath(beyond, undersides(next, next_at).x, obstacle_threshold) : kHeightLimit;
+  int outer = pairFlow(cells.w, beyond, threshold, soil.w, beyond - bedrock[next_at].x, room.w, beyond_room);
   if (outer != 0) {
     height[at].w = cells.w - outer;
-    height[next].x = beyond + outer;
+    height[next_at].x = beyond + outer;
   }
   return (inner | outer) != 0;
 }
 
 void main() {
   int id = groupIndex() * kGroup + lane();
-  int tile = id / kTileLanes;
-  if (tile >= tick.tile_count) return;
-  int slab = id % kTileLanes / kRowQuads;
-  int right = parity == 0 ? -1 : tiles[tile].neighbour[5];
-  if (settled(tile, slab) && settled(right, slab)) return;
+  int tile = id / kRowQuads;
+  if (tile >= tile_count) return;
   int column = id % kRowQuads;
-  if (column == 0) atomicAdd(tick.slabs_visited, 1);
-
-  threshold = tick.slope_threshold;
   bool last = column == kRowQuads - 1;
-  int next_tile = last ? right : tile;
-  bool under_body = covered(tile);
-  bool next_under_body = parity != 0 && covered(next_tile);
-  bool beneath = under_body || next_under_body || nearLimit();
-  int first = tile * kTileQuads + slab * kSlabRows * kRowQuads + column;
-  int next = next_tile < 0 ? -1 : last ? first + (next_tile - tile) * kTileQuads - column : first + 1;
-  bool moved = false;
-  for (int quad = 0; quad < kSlabRows * kRowQuads; quad += kRowQuads) {
-    bool row_moved = parity == 0
-                         ? exchangeEven(first + quad, beneath, under_body)
-                         : exchangeOdd(first + quad, next < 0 ? -1 : next + quad, beneath, under_body, next_under_body);
-    moved = moved || row_moved;
+  int right_tile = parity == 0 ? -1 : tiles[tile].neighbour[5];
+  int to_next = last ? (right_tile - tile) * kTileQuads - column : 1;
+  int index = -1;
+  for (;;) {
+    Slab slab, right;
+    do {
+      ++index;
+      slab = slabAt(tile, min(index, kSlabs - 1));
+      right = slabAt(right_tile, slab.slab);
+    } while (index < kSlabs && settled(slab) && settled(right));
+    if (index >= kSlabs) break;
+    if (column == 0) atomicAdd(tick.slabs_visited, 1);
+    Slab next = slab;
+    if (last) next = right;
+    bool beneath = limits(min(slab.ceiling, next.ceiling));
+    int at = tile * kTileQuads + index * kSlabRows * kRowQuads + column;
+    bool moved = false;
+    for (int row = 0; row < kSlabRows; ++row) {
+      bool row_moved =
+          parity == 0 ? exchangeEven(at, slab, beneath) : exchangeOdd(at, at + to_next, slab, next, beneath);
+      moved = moved || row_moved;
+      at += kRowQuads;
+    }
+    if (!moved) continue;
+    markChanged(slab);
+    if (parity != 0 && next.tile >= 0) markChanged(next);
   }
-  if (!moved) return;
-  tile_states[tile].changed_at[slab] = step;
-  if (parity != 0 && next_tile >= 0) tile_states[next_tile].changed_at[slab] = step;
 }

@@ -33,10 +33,8 @@ void main() {
   atomicMax(group_highest, lane_highest);
   barrier();
   if (lane() == 0) atomicMax(tick.highest, group_highest);
-  if (groupIndex() % kGroupsPerTile == 0 && lane() <= kSlabs) {
-    if (lane() == kSlabs)
-      tile_states[tile].covered = 0;
-    else
-      tile_states[tile].changed_at[lane()] = 0;
+  if (groupIndex() % kGroupsPerTile == 0 && lane() < kSlabs) {
+    tile_states[tile].ceiling[lane()] = kNoUnderside;
+    tile_states[tile].changed_at[lane()] = 0;
   }
 }

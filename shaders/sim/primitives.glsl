@@ -52,13 +52,13 @@ Primitive primitiveAt(int body, int i) {
   return p;
 }
 
-void lower(int domain, int x, int y, int reached) {
-  int at = tileCell(domain, x, y);
+void lower(int at, int reached) {
   if (underside[at] > reached) atomicMin(underside[at], reached);
 }
 
 void drawTriangleRow(Primitive p, RasterTriangle t, int y) {
   int body = p.body;
+  int domain = bodies[body].domain;
   RasterSpan whole = RasterSpan(bodies[body].x0 - bodies[body].origin_x, bodies[body].x1 - bodies[body].origin_x);
   int row = y - bodies[body].origin_y;
   RasterSpan span = triangleSpan(t, row, whole);
@@ -66,9 +66,13 @@ void drawTriangleRow(Primitive p, RasterTriangle t, int y) {
   int first = heightInWorld(bodies[body].z, triangleHeight(t, span.begin, row));
   int lowest = heightInWorld(bodies[body].z, t.lowest);
   int highest = heightInWorld(bodies[body].z, t.highest);
-  for (int i = 0; i < span.end - span.begin; ++i)
-    lower(bodies[body].domain, bodies[body].origin_x + span.begin + i, y,
-          triangleHeightAlong(first, t.step, t.step_fraction, i, lowest, highest));
+  int x = bodies[body].origin_x + span.begin;
+  int count = span.end - span.begin;
+  for (int i = 0; i < count;) {
+    int at = tileCell(domain, x + i, y);
+    int stop = min(count, i + kTileSize - (x + i) % kTileSize);  // up to the tile's border
+    for (; i < stop; ++i) lower(at++, triangleHeightAlong(first, t.step, t.step_fraction, i, lowest, highest));
+  }
 }
 
 /// `u`: a row where the edge runs along y, else a column.
@@ -78,8 +82,9 @@ void drawEdgeColumn(Primitive p, RasterEdge e, int u) {
   int v_origin = p.along_y ? bodies[body].origin_x : bodies[body].origin_y;
   int first = max(column.first + v_origin, p.along_y ? bodies[body].x0 : bodies[body].y0);
   int last = min(column.last + v_origin, (p.along_y ? bodies[body].x1 : bodies[body].y1) - 1);
+  int domain = bodies[body].domain;
   int reached = heightInWorld(bodies[body].z, column.height);
-  for (int v = first; v <= last; ++v) lower(bodies[body].domain, p.along_y ? v : u, p.along_y ? u : v, reached);
+  for (int v = first; v <= last; ++v) lower(tileCell(domain, p.along_y ? v : u, p.along_y ? u : v), reached);
 }
 
 /// Draws rows (or columns) begin..end - 1, every `stride`-th.

@@ -46,7 +46,8 @@ void load(int tile, ivec2 block) {
     int at = max(near, 0) * kTileCells + y % kTileSize * kTileSize + x % kTileSize;
     cells[i] = near < 0 ? 0 : height[at];
     floors[i] = near < 0 ? 0 : bedrock[at];
-    ceilings[i] = near < 0 ? -kHeightLimit : tile_states[near].covered != 0 ? underside[at] : kNoUnderside;
+    bool filled = near >= 0 && tile_states[near].ceiling[y % kTileSize / kSlabRows] < kNoUnderside;
+    ceilings[i] = near < 0 ? -kHeightLimit : filled ? underside[at] : kNoUnderside;
   }
 }
 

@@ -42,6 +42,7 @@ RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tile
 RULE_CONST kSubStepMost = 32;
 RULE_CONST kSlabRows = 8;  // what relax skips where nothing has changed
 RULE_CONST kSlabs = kTileSize / kSlabRows;
+RULE_CONST kSlabCells = kSlabRows * kTileSize;
 RULE_CONST kMaskRows = 32;          // rows of a free mask's word, and of a block of a domain
 RULE_CONST kLargeParts = 4;         // groups that share a large primitive
 RULE_CONST kDispatchColumns = 256;  // groups per row of a dispatch whose size the GPU finds
@@ -89,11 +90,10 @@ struct TileEntry {
   int unused[2];
 };
 
-/// What the tick knows of an active tile.
+/// What the tick knows of an active tile's slabs.
 struct TileState {
-  int covered;             // may an underside limit what its cells take? If not, its undersides are not filled
-  int changed_at[kSlabs];  // step of the relaxation at which a slab of rows last changed
-  int unused[3];
+  int ceiling[kSlabs];     // the lowest underside; kNoUnderside: none, and the slab's undersides are not filled
+  int changed_at[kSlabs];  // step of the relaxation at which it last changed
 };
 
 /// One group's share of a table: what `owner` means depends on the stage.
