@@ -1,5 +1,6 @@
 // spoor-replay: what a session file holds, and whether this machine gets the same.
 #include <cstdio>
+#include <deque>
 #include <exception>
 
 #include "shaders/host/make_backend.h"
@@ -57,20 +58,30 @@ int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
   const BaseTerrain base(reader.pack());
   Simulation simulation(base, reader.id(), std::move(backend));
   std::printf("backend %s\n", simulation.backend().name().c_str());
-  for (;;) {
-    auto record = reader.next();
-    if (!record) return fail(record.error());
-    if (!*record) break;
-    const TickRecord& tick = **record;
-    auto result = simulation.step(tick.poses);
+  // The next tick is begun before one is finished, so that a device works on it while this one is compared.
+  std::deque<TickRecord> begun;
+  for (bool ended = false;;) {
+    while (!ended && begun.size() < Simulation::kTicksInFlight) {
+      auto record = reader.next();
+      if (!record) return fail(record.error());
+      ended = !*record;
+      if (ended) break;
+      if (Status status = simulation.begin((*record)->poses); !status)
+        return fail("tick " + std::to_string((*record)->tick) + ": " + status.error());
+      begun.push_back(std::move(**record));
+    }
+    if (begun.empty()) break;
+    const TickRecord tick = std::move(begun.front());
+    begun.pop_front();
+    auto result = simulation.finish();
     if (!result) return fail("tick " + std::to_string(tick.tick) + ": " + result.error());
     if (result->update.state_hash != tick.state_hash)
       return fail("tick " + std::to_string(tick.tick) + ": hash " + hexText(result->update.state_hash) + " here, " +
                   hexText(tick.state_hash) + " recorded");
-    if (simulation.state().ledger != tick.ledger || tick.ledger.error() != 0)
+    if (result->ledger != tick.ledger || tick.ledger.error() != 0)
       return fail("tick " + std::to_string(tick.tick) + ": the ledger is off by " +
-                  std::to_string(simulation.state().ledger.error()) + " here, by " +
-                  std::to_string(tick.ledger.error()) + " in the record");
+                  std::to_string(result->ledger.error()) + " here, by " + std::to_string(tick.ledger.error()) +
+                  " in the record");
     if (tick.tick % 100 == 0) std::fprintf(stderr, "tick %d\n", tick.tick);
   }
   if (simulation.state().tick == 0) return fail("the session holds no ticks");

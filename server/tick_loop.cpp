@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -38,19 +39,19 @@ class Pace {
   Clock::time_point next_;
 };
 
-void note(LoopFigures& figures, const TickResult& result, const WorldState& state, double tick_ms) {
-  const auto keep = [tick = std::size_t(state.tick)](std::vector<double>& values, double value) {
+void note(LoopFigures& figures, const TickResult& result, std::int32_t tick, double tick_ms) {
+  const auto keep = [at = std::size_t(tick)](std::vector<double>& values, double value) {
     if (values.size() < LoopFigures::kTicksKept) {
       values.push_back(value);
     } else {
-      values[tick % LoopFigures::kTicksKept] = value;
+      values[at % LoopFigures::kTicksKept] = value;
     }
   };
   keep(figures.tick_ms, tick_ms);
   for (int stage = 0; stage < kStageCount; ++stage) keep(figures.stage_ms[stage], result.effect.stage_ms[stage]);
   keep(figures.active_cells, double(result.effect.active_cells));
   figures.too_fast_ticks += result.too_fast ? 1 : 0;
-  figures.unbalanced_ticks += state.ledger.error() != 0 ? 1 : 0;
+  figures.unbalanced_ticks += result.ledger.error() != 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -62,38 +63,52 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
   Pace pace(options.rate_hz);
   const auto start = Clock::now();
   auto said = start;
-  for (std::int32_t tick = 1; tick <= options.ticks; ++tick) {
+  // A paced tick is published as soon as it can be. Without a pace the next one is begun first, so that a device works
+  // on it while this one is encoded.
+  const std::int32_t ahead = options.rate_hz > 0 ? 0 : 1;
+  std::int32_t begun = 0, last = options.ticks;
+  std::string failure;
+  for (std::int32_t tick = 1; tick <= last; ++tick) {
     figures.late_ticks += pace.await() ? 1 : 0;
     const auto tick_start = Clock::now();
     StageTimes outer{};
-    std::vector<Pose> poses;
-    {
-      StageTimer timer(outer, Stage::commands);
-      poses = script.poses(tick);
+    while (begun < std::min(tick + ahead, last)) {
+      std::vector<Pose> poses;
+      {
+        StageTimer timer(outer, Stage::commands);
+        poses = script.poses(begun + 1);
+      }
+      if (Status status = simulation.begin(poses); status) {
+        ++begun;
+      } else {  // the pack's own script left the range, or a device failed: the session ends, what is done stays done
+        failure = fmt::format("tick {}: {}", begun + 1, status.error());
+        last = begun;
+      }
     }
-    auto result = simulation.step(poses);
-    if (!result) {  // the pack's own script left the range: the session ends here, what is done stays done
-      say(fmt::format("tick {}: {}", tick, result.error()));
+    if (tick > last) break;
+    auto result = simulation.finish();
+    if (!result) {
+      failure = fmt::format("tick {}: {}", tick, result.error());
       break;
     }
     const double tick_ms = millisecondsSince(tick_start);
     result->effect.stage_ms[int(Stage::commands)] = outer[int(Stage::commands)];
     const std::uint64_t hash = result->update.state_hash;
-    const std::int64_t active_cells = result->effect.active_cells;
     const auto publish_start = Clock::now();
-    if (writer != nullptr) writer->append({tick, std::move(poses), hash, simulation.state().ledger});
+    if (writer != nullptr) writer->append({tick, result->update.poses, hash, result->ledger});
     if (host != nullptr) host->publish(std::move(result->update));
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
     if (result->too_fast && figures.too_fast_ticks == 0)
       say(fmt::format("tick {}: a body moves farther than one cell in each of {} sub-steps; its trail may have gaps",
                       tick, kSubStepLimit));
-    note(figures, *result, simulation.state(), tick_ms);
-    if (Clock::now() - said > std::chrono::seconds(1) || tick == options.ticks) {
+    note(figures, *result, tick, tick_ms);
+    if (Clock::now() - said > std::chrono::seconds(1) || tick == last) {
       said = Clock::now();
       say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, hash {}", tick, options.ticks,
-                      tick_ms, active_cells, simulation.state().tiles.size(), hexText(hash)));
+                      tick_ms, result->effect.active_cells, simulation.state().tiles.size(), hexText(hash)));
     }
   }
+  if (!failure.empty()) say(failure);
   figures.wall_s = millisecondsSince(start) / 1e3;
   return figures;
 }

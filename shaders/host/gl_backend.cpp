@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "shaders/host/gl_context.h"
 #include "shaders/host/stage_clock.h"
@@ -25,6 +27,15 @@ constexpr std::int64_t kSlabPairs = rules::kSlabRows * rules::kTileSize / 2;
 constexpr std::int64_t kPairBytes = 24;           // two heights in and out, two bedrocks in
 constexpr std::int64_t kFusedPairBytes = 24 / 4;  // a fused sweep reads and writes a cell once, for its four pairs
 constexpr std::int64_t kHashBytes = 8;            // per active cell: compare with the pool
+
+/// A tick between submit() and settle().
+struct Submitted {
+  TickPlan plan;
+  const ScenePack* pack = nullptr;
+  ActiveTiles active;
+  TickTables tables;
+  TickEffect effect;
+};
 
 /// What a tick left on the device for collect().
 struct Uncollected {
@@ -58,29 +69,39 @@ class GlBackend final : public Backend {
 
   std::string renderer() const override { return limits_.renderer; }
 
-  Result<TickEffect> run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
-    SPOOR_ASSERT(uncollected_.size() < 2);
-    if (failed_ && !uncollected_.empty())
-      return Error{"gl: after a failed tick the one before it must be collected first"};
-    failed_ = false;
-    TickEffect effect;
-    if (plan.active.empty()) {
+  Status submit(TickPlan plan, const BaseTerrain& base, const WorldState& state) override {
+    SPOOR_ASSERT(!submitted_ && uncollected_.size() < 2);
+    Submitted tick;
+    tick.pack = &base.pack();
+    tick.plan = std::move(plan);
+    if (!tick.plan.active.empty()) {
+      const CurrentContext current(*context_);
+      if (!current.ok()) return kNotCurrent;
+      {
+        StageTimer timer(tick.effect.stage_ms, Stage::active);
+        tick.active = takeTiles(tick.plan, base, state, pool_);
+      }
+      if (Status status = queueStages(tick); !status) {
+        device_->tiles.forget();  // fresh tiles are gone again
+        return status;
+      }
+    }
+    submitted_ = std::move(tick);
+    return {};
+  }
+
+  Result<TickEffect> settle(WorldState& state) override {
+    SPOOR_ASSERT(submitted_.has_value());
+    Submitted tick = *std::exchange(submitted_, std::nullopt);
+    if (tick.plan.active.empty()) {
       uncollected_.emplace_back();
-      return effect;
+      return std::move(tick.effect);
     }
     const CurrentContext current(*context_);
-    if (!current.ok()) return Error{"gl: the context cannot be made current on this thread"};
-    std::vector<Tile*> made_live;
-    const std::vector<Tile*> tiles = takeTiles(plan, base, state, pool_, made_live);
-    Status done = compute(plan, base.pack(), tiles, effect);
-    if (!done) {
-      device_->tiles.forget();  // the pool may be a tick ahead of the state, and the state a tick ahead of its cells
-      failed_ = true;
-      for (Tile* tile : made_live) state.tiles.remove(*tile);
-      return Error{"tick " + std::to_string(plan.tick) + ": " + done.error()};
-    }
-    commit(plan, base.pack(), tiles, made_live, state, effect);
-    return effect;
+    if (!current.ok()) return Error{kNotCurrent.error()};
+    if (Status status = fetchResults(tick); !status) return Error{status.error()};
+    commit(tick, state);
+    return std::move(tick.effect);
   }
 
   Status collect(WorldState& state, std::vector<TileChange>& changes) override {
@@ -89,7 +110,7 @@ class GlBackend final : public Backend {
     uncollected_.pop_front();
     if (tick.cells == 0) return {};
     const CurrentContext current(*context_);
-    if (!current.ok()) return Error{"gl: the context cannot be made current on this thread"};
+    if (!current.ok()) return kNotCurrent;
     if (Status status = device_->copied[tick.readback].wait("changed cells"); !status) return status;
     const auto* cells = reinterpret_cast<const std::int32_t*>(device_->changed_cells[tick.readback].data());
     for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -107,13 +128,14 @@ class GlBackend final : public Backend {
 
   void forget() override {
     device_->tiles.forget();
+    submitted_.reset();
     uncollected_.clear();
     loaded_ = nullptr;
   }
 
   BackendMemory memory() const override {
     return {device_->tiles.hostBytes() + device_->results.bytes() + device_->changed_cells[0].bytes() +
-                device_->changed_cells[1].bytes() + std::int64_t(tables_.bytes.capacity()),
+                device_->changed_cells[1].bytes(),
             device_->tiles.deviceBytes() + device_->stages.deviceBytes()};
   }
 
@@ -134,87 +156,96 @@ class GlBackend final : public Backend {
     GlFence finished, copied[2];
   };
 
-  /// Runs the stages and waits for their results. Leaves the state alone.
-  Status compute(const TickPlan& plan, const ScenePack& pack, const std::vector<Tile*>& tiles, TickEffect& effect) {
+  /// Brings a tick's tiles and tables to the device.
+  Status prepare(Submitted& tick) {
+    StageTimer timer(tick.effect.stage_ms, Stage::active);
+    if (loaded_ != tick.pack) {
+      meshes_ = makeMeshTable(*tick.pack);
+      if (Status status = device_->stages.load(*tick.pack, meshes_); !status) return status;
+      loaded_ = tick.pack;
+    }
+    auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick);
+    if (!slots) return Error{slots.error()};
+    tick.tables = makeTickTables(*tick.pack, meshes_, tick.plan, *slots, shape_);
+    return device_->stages.begin(tick.tables);
+  }
+
+  /// Queues all stages of a tick, and the copy of their results to the host.
+  Status queueStages(Submitted& tick) {
     GlStages& stages = device_->stages;
     StageClock& clock = device_->clock;
     const std::int64_t copied_before = device_->tiles.copiedBytes(), dispatched_before = stages.dispatchCount();
+    if (Status status = prepare(tick); !status) return status;
+    const TickTables& tables = tick.tables;
     clock.begin();
-    if (loaded_ != &pack) {
-      meshes_ = makeMeshTable(pack);
-      if (Status status = stages.load(pack, meshes_); !status) return status;
-      loaded_ = &pack;
-    }
-    auto slots = device_->tiles.hold(tiles, plan.tick);
-    if (!slots) return Error{slots.error()};
-    tables_ = makeTickTables(pack, meshes_, plan, *slots, shape_);
-    if (Status status = stages.begin(tables_); !status) return status;
-    stages.gather(device_->tiles);
+    stages.gather(tables, device_->tiles);
     clock.end(Stage::active);
-    for (int i = 0; i < int(tables_.sub_steps.size()); ++i) {
-      const SubStepTables& step = tables_.sub_steps[std::size_t(i)];
-      stages.depth(step, i);
+    for (int i = 0; i < int(tables.sub_steps.size()); ++i) {
+      stages.depth(tables, i);
       clock.end(Stage::depth);
-      stages.penetration(step, i);
+      stages.penetration(tables, i);
       clock.end(Stage::penetration);
-      stages.nearest(step, i);
+      stages.nearest(tables, i);
       clock.end(Stage::nearest);
-      stages.displace(step, i);
+      stages.displace(tables, i);
       clock.end(Stage::displace);
-      stages.relax(step);
+      stages.relax(tables, i);
       clock.end(Stage::relax);
-      effect.domain_cells += step.domain_cells;
+      tick.effect.domain_cells += tables.sub_steps[std::size_t(i)].domain_cells;
     }
-    stages.hash(device_->tiles);
+    stages.hash(tables, device_->tiles);
     clock.end(Stage::hash);
-    if (Status status = fetchResults(std::int64_t(tiles.size())); !status) return status;
-    std::memcpy(&head_, device_->results.data(), kHeadBytes);
-    if (Status status = readback().reserve(stagedBytes()); !status) return status;
-    clock.addTo(effect.stage_ms);
-    effect.dispatches = stages.dispatchCount() - dispatched_before;
-    effect.bytes_to_device = device_->tiles.copiedBytes() - copied_before + std::int64_t(tables_.bytes.size());
-    return {};
-  }
+    tick.effect.dispatches = stages.dispatchCount() - dispatched_before;
+    tick.effect.bytes_to_device = device_->tiles.copiedBytes() - copied_before + std::int64_t(tables.bytes.size());
 
-  /// Waits for the tick's head and its tiles' results.
-  Status fetchResults(std::int64_t tile_count) {
-    const std::int64_t bytes = tile_count * std::int64_t(sizeof(rules::TileResult));
-    if (Status status = device_->results.reserve(kHeadBytes + bytes); !status) return status;
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // the tables' head, results, and staging, which is copied later
-    glCopyNamedBufferSubData(device_->stages.tables(), device_->results.name(), tables_.head.offset, 0, kHeadBytes);
-    glCopyNamedBufferSubData(device_->stages.results().name(), device_->results.name(), 0, kHeadBytes, bytes);
+    const std::int64_t result_bytes = std::int64_t(tick.active.tiles.size() * sizeof(rules::TileResult));
+    if (Status status = device_->results.reserve(kHeadBytes + result_bytes); !status) return status;
+    glMemoryBarrier(
+        GL_BUFFER_UPDATE_BARRIER_BIT);  // the tables' head and results; staging, which is copied later; pool
+    glCopyNamedBufferSubData(stages.tables(), device_->results.name(), tables.head.offset, 0, kHeadBytes);
+    glCopyNamedBufferSubData(stages.results().name(), device_->results.name(), 0, kHeadBytes, result_bytes);
     device_->finished.place();
-    if (Status status = device_->finished.wait("results"); !status) return status;
     return glStatus("the stages");
   }
 
+  /// Waits for a tick's head and its tiles' results.
+  Status fetchResults(Submitted& tick) {
+    if (Status status = device_->finished.wait("results"); !status) return status;
+    std::memcpy(&head_, device_->results.data(), kHeadBytes);
+    device_->clock.addTo(tick.effect.stage_ms);
+    return readback().reserve(stagedBytes());
+  }
+
   /// Takes the state to the new tick and sends the changed cells on their way.
-  void commit(const TickPlan& plan, const ScenePack& pack, const std::vector<Tile*>& tiles,
-              const std::vector<Tile*>& made_live, WorldState& state, TickEffect& effect) {
-    std::vector<TileOutcome> outcomes(tiles.size());
-    std::vector<std::int64_t> first_of_tile(tiles.size());
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
+  void commit(Submitted& tick, WorldState& state) {
+    const std::size_t count = tick.active.tiles.size();
+    const std::vector<Tile*> tiles = tick.active.tiles;
+    std::vector<TileOutcome> outcomes(count);
+    std::vector<std::int64_t> first_of_tile(count);
+    for (std::size_t i = 0; i < count; ++i) {
       rules::TileResult result;
-      std::memcpy(&result, device_->results.data() + kHeadBytes + std::size_t(tables_.tile_index[i]) * sizeof(result),
+      std::memcpy(&result,
+                  device_->results.data() + kHeadBytes + std::size_t(tick.tables.tile_index[i]) * sizeof(result),
                   sizeof(result));
       outcomes[i] = outcomeOf(result);
       first_of_tile[i] = result.first_staged;
     }
-    Uncollected& tick = uncollected_.emplace_back();
-    effect.changes = commitTick(plan, pack.sweeps_per_tick, tiles, made_live, std::move(outcomes), state);
+    std::vector<TileChange>& changes = tick.effect.changes;
+    changes = commitTick(tick.plan, tick.pack->sweeps_per_tick, std::move(tick.active), std::move(outcomes), state);
+    Uncollected& left = uncollected_.emplace_back();
     std::size_t tile = 0;
-    for (const TileChange& change : effect.changes) {
+    for (const TileChange& change : changes) {
       while (tiles[tile]->at != change.at) ++tile;
-      tick.first_of_change.push_back(first_of_tile[tile]);
+      left.first_of_change.push_back(first_of_tile[tile]);
     }
-    tick.cells = head_.staged_cells;
-    tick.readback = next_readback_;
-    if (tick.cells > 0) {
+    left.cells = head_.staged_cells;
+    left.readback = next_readback_;
+    if (left.cells > 0) {
       glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, stagedBytes());
-      device_->copied[tick.readback].place();
+      device_->copied[next_readback_].place();
     }
     next_readback_ = 1 - next_readback_;
-    count(std::int64_t(tiles.size()), effect);
+    fillIn(std::int64_t(count), tick.effect);
   }
 
   ReadbackBuffer& readback() { return device_->changed_cells[next_readback_]; }
@@ -233,7 +264,8 @@ class GlBackend final : public Backend {
     return outcome;
   }
 
-  void count(std::int64_t tile_count, TickEffect& effect) const {
+  /// The effect's figures.
+  void fillIn(std::int64_t tile_count, TickEffect& effect) const {
     effect.active_cells = tile_count * rules::kTileCells;
     effect.penetrating_cells = head_.penetrating_cells;
     effect.pairs_visited = head_.slabs_visited * kSlabPairs;
@@ -244,6 +276,7 @@ class GlBackend final : public Backend {
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 
+  inline static const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
   static constexpr std::int64_t kHeadBytes = offsetof(rules::TickHead, lists);
 
   std::unique_ptr<HeadlessContext> context_;
@@ -254,11 +287,10 @@ class GlBackend final : public Backend {
   std::unique_ptr<Device> device_;
   const ScenePack* loaded_ = nullptr;  // whose meshes are on the device
   MeshTable meshes_;
-  TickTables tables_;
   rules::TickHead head_{};  // of the last tick, as the stages left it
+  std::optional<Submitted> submitted_;
   std::deque<Uncollected> uncollected_;
   int next_readback_ = 0;
-  bool failed_ = false;  // the last run did
 };
 
 Result<std::unique_ptr<Backend>> openBackend(const GlOptions& options) {

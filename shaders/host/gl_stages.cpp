@@ -86,12 +86,11 @@ Status GlStages::load(const ScenePack& pack, const MeshTable& meshes) {
   return copy(indices_, meshes.indices);
 }
 
-Status GlStages::begin(const TickTables& tables) {
-  tick_ = &tables;
+Status GlStages::begin(const TickTables& tick) {
   current_ = 0;
-  const std::int64_t tiles = std::int64_t(tables.tile_index.size());
+  const std::int64_t tiles = std::int64_t(tick.tile_index.size());
   SubStepTables most;
-  for (const SubStepTables& step : tables.sub_steps) {
+  for (const SubStepTables& step : tick.sub_steps) {
     most.point_count = std::max(most.point_count, step.point_count);
     most.primitive_count = std::max(most.primitive_count, step.primitive_count);
     most.domain_cells = std::max(most.domain_cells, step.domain_cells);
@@ -101,7 +100,7 @@ Status GlStages::begin(const TickTables& tables) {
   const std::int64_t plane_bytes = tiles * rules::kTileCells * kCellBytes;
   const std::int64_t domain_bytes = most.domain_cells * kCellBytes;
   const std::pair<GrowingBuffer*, std::int64_t> needs[] = {
-      {&upload_, std::int64_t(tables.bytes.size())},
+      {&upload_, std::int64_t(tick.bytes.size())},
       {&points_, most.point_count * std::int64_t(sizeof(rules::RasterPoint))},
       {&large_, most.primitive_count * 2 * kCellBytes},
       {&height_[0], plane_bytes},
@@ -124,7 +123,7 @@ Status GlStages::begin(const TickTables& tables) {
   };
   for (const auto& [buffer, bytes] : needs)
     if (Status status = buffer->reserve(bytes); !status) return status;
-  glNamedBufferSubData(upload_.name(), 0, std::int64_t(tables.bytes.size()), tables.bytes.data());
+  glNamedBufferSubData(upload_.name(), 0, std::int64_t(tick.bytes.size()), tick.bytes.data());
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, upload_.name());
   return glStatus("copying a tick's tables");
 }
@@ -154,35 +153,37 @@ void GlStages::dispatchListed(std::int64_t arguments) {
   ++dispatch_count_;
 }
 
-void GlStages::bindCells() const {
-  bindTable(rules::kBindTick, tick_->head);
-  bindTable(rules::kBindTiles, tick_->tiles);
+void GlStages::bindCells(const TickTables& tick) const {
+  bindTable(rules::kBindTick, tick.head);
+  bindTable(rules::kBindTiles, tick.tiles);
   tile_states_.bind(rules::kBindTileStates);
   height_[current_].bind(rules::kBindHeight);
   bedrock_.bind(rules::kBindBedrock);
   underside_.bind(rules::kBindUnderside);
 }
 
-void GlStages::gather(const TilePool& pool) {
-  bindCells();
+void GlStages::gather(const TickTables& tick, const TilePool& pool) {
+  bindCells(tick);
   pool.height().bind(rules::kBindPoolHeight);
   pool.bedrock().bind(rules::kBindPoolBedrock);
   use(gather_);
-  dispatch(tick_->gather);
+  dispatch(tick.gather);
 }
 
-void GlStages::depth(const SubStepTables& step, int sub_step) {
-  bindCells();
-  use(cover_, sub_step);
+void GlStages::depth(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
+  bindCells(tick);
+  use(cover_, i);
   setUniform(2, step.first_step);
   dispatch(step.cover);
-  if (step.primitives.count > 0) drawBodies(step, sub_step);
-  use(ceiling_, sub_step);
+  if (step.primitives.count > 0) drawBodies(tick, i);
+  use(ceiling_, i);
   setUniform(2, step.first_step);
   dispatch(step.cover);
 }
 
-void GlStages::drawBodies(const SubStepTables& step, int sub_step) {
+void GlStages::drawBodies(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   bindTable(rules::kBindBodies, step.bodies);
   bindTable(rules::kBindDomains, step.domains);
   bindTable(rules::kBindDomainTiles, step.domain_tiles);
@@ -190,34 +191,36 @@ void GlStages::drawBodies(const SubStepTables& step, int sub_step) {
   indices_.bind(rules::kBindIndices);
   points_.bind(rules::kBindPoints);
   large_.bind(rules::kBindLarge);
-  use(place_, sub_step);
+  use(place_, i);
   dispatch(step.place);
-  use(depth_, sub_step);
+  use(depth_, i);
   dispatch(step.primitives);
-  use(depth_large_, sub_step);
-  dispatchListed(listOffset(*tick_, sub_step, offsetof(rules::SubStepLists, large)));
+  use(depth_large_, i);
+  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, large)));
 }
 
-void GlStages::penetration(const SubStepTables& step, int sub_step) {
+void GlStages::penetration(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   if (step.domain_blocks.count == 0) return;
-  bindCells();
+  bindCells(tick);
   bindTable(rules::kBindDomains, step.domains);
   bindTable(rules::kBindDomainTiles, step.domain_tiles);
   overlap_.bind(rules::kBindOverlap);
   free_mask_.bind(rules::kBindFreeMask);
   row_chunks_.bind(rules::kBindRowChunks);
-  use(penetration_, sub_step);
+  use(penetration_, i);
   dispatch(step.domain_blocks);
 }
 
-void GlStages::nearest(const SubStepTables& step, int sub_step) {
+void GlStages::nearest(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   if (step.domain_blocks.count == 0) return;
-  const std::int64_t rows = listOffset(*tick_, sub_step, offsetof(rules::SubStepLists, rows));
+  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
   target_.bind(rules::kBindTarget);
   nearest_row_.bind(rules::kBindNearestRow);
-  use(nearest_columns_, sub_step);
+  use(nearest_columns_, i);
   dispatchListed(rows);
-  use(nearest_search_, sub_step);
+  use(nearest_search_, i);
   int found_stride = 0;
   for (const int stride : {64, 8, 1}) {
     setUniform(2, stride);
@@ -227,65 +230,67 @@ void GlStages::nearest(const SubStepTables& step, int sub_step) {
   }
 }
 
-void GlStages::displace(const SubStepTables& step, int sub_step) {
+void GlStages::displace(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   if (step.domain_blocks.count == 0) return;
-  const std::int64_t rows = listOffset(*tick_, sub_step, offsetof(rules::SubStepLists, rows));
+  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
   requested_low_.bind(rules::kBindRequestedLow);
   requested_high_.bind(rules::kBindRequestedHigh);
   receivers_.bind(rules::kBindReceivers);
-  use(displace_request_, sub_step);
+  use(displace_request_, i);
   dispatchListed(rows);
   granted_low_.bind(rules::kBindGrantedLow);
   granted_high_.bind(rules::kBindGrantedHigh);
-  use(displace_take_, sub_step);
+  use(displace_take_, i);
   dispatchListed(rows);
   receivers_.bind(rules::kBindRowChunks);
-  use(displace_give_, sub_step);
-  dispatchListed(listOffset(*tick_, sub_step, offsetof(rules::SubStepLists, receivers)));
+  use(displace_give_, i);
+  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, receivers)));
 }
 
-void GlStages::relax(const SubStepTables& step) {
+void GlStages::relax(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   for (int sweep = 0; sweep < step.sweep_count; ++sweep) {
     const int first_step = step.first_step + sweep * rules::kMatchingCount;
     if (schedule_ == RelaxSchedule::fused)
-      sweepFused(first_step);
+      sweepFused(tick, first_step);
     else
-      sweepPlain(first_step);
+      sweepPlain(tick, first_step);
   }
 }
 
-void GlStages::sweepPlain(int first_step) {
-  bindCells();
+void GlStages::sweepPlain(const TickTables& tick, int first_step) {
+  bindCells(tick);
   for (int matching = 0; matching < rules::kMatchingCount; ++matching) {
     const bool along = matching < rules::kMatchVertical;
     use(along ? exchange_along_ : exchange_across_[std::size_t(matching / 2 - 1)]);
     setUniform(2, first_step + matching);
     setUniform(3, matching & 1);
     setUniform(4, skip_settled_ ? 1 : 0);
-    setUniform(5, int(tick_->tile_index.size()));
+    setUniform(5, int(tick.tile_index.size()));
     setUniform(6, matching < rules::kMatchDiagonal ? slope_threshold_ : diagonal_threshold_);
     setUniform(7, obstacle_threshold_);
-    dispatch(tick_->exchange);
+    dispatch(tick.exchange);
   }
 }
 
-void GlStages::sweepFused(int first_step) {
-  bindCells();
+void GlStages::sweepFused(const TickTables& tick, int first_step) {
+  bindCells(tick);
   height_[1 - current_].bind(rules::kBindNextHeight);
   use(sweep_);
   setUniform(2, first_step);
   setUniform(4, skip_settled_ ? 1 : 0);
-  dispatch(tick_->sweep);
+  dispatch(tick.sweep);
   current_ = 1 - current_;
 }
 
-void GlStages::hash(const TilePool& pool) {
-  bindCells();
+void GlStages::hash(const TickTables& tick, const TilePool& pool) {
+  bindCells(tick);
   pool.height().bind(rules::kBindPoolHeight);
   results_.bind(rules::kBindResults);
   staging_.bind(rules::kBindStaging);
   use(hash_);
-  dispatch(tick_->hash);
+  dispatch(tick.hash);
 }
 
 std::int64_t GlStages::deviceBytes() const {

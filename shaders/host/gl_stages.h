@@ -29,20 +29,18 @@ class GlStages {
   /// Takes a pack's thresholds, and copies its meshes to the device. Errors: too large for it.
   [[nodiscard]] Status load(const ScenePack& pack, const MeshTable& meshes);
 
-  /// Makes room for a tick and copies its tables to the device. The tables must live until the tick's last stage.
-  /// Errors: the device has not the memory.
-  [[nodiscard]] Status begin(const TickTables& tables);
+  /// Makes room for a tick and copies its tables to the device. Errors: the device has not the memory.
+  [[nodiscard]] Status begin(const TickTables& tick);
 
-  /// Lays out the active tiles' cells.
-  void gather(const TilePool& pool);
-  // The stages of one sub-step, in order.
-  void depth(const SubStepTables& step, int sub_step);
-  void penetration(const SubStepTables& step, int sub_step);
-  void nearest(const SubStepTables& step, int sub_step);
-  void displace(const SubStepTables& step, int sub_step);
-  void relax(const SubStepTables& step);
+  // The tick's stages, in order; those with `i` for every sub-step.
+  void gather(const TickTables& tick, const TilePool& pool);
+  void depth(const TickTables& tick, int i);
+  void penetration(const TickTables& tick, int i);
+  void nearest(const TickTables& tick, int i);
+  void displace(const TickTables& tick, int i);
+  void relax(const TickTables& tick, int i);
   /// Results, staging and the pool's new heights.
-  void hash(const TilePool& pool);
+  void hash(const TickTables& tick, const TilePool& pool);
 
   std::int64_t dispatchCount() const { return dispatch_count_; }  // since it was made
   std::int64_t deviceBytes() const;
@@ -63,14 +61,13 @@ class GlStages {
   void dispatch(const GroupList& list);
   void dispatchListed(std::int64_t arguments);
   void bindTable(int binding, const TableRange& range) const;
-  void bindCells() const;
-  void drawBodies(const SubStepTables& step, int sub_step);
-  void sweepPlain(int first_step);
-  void sweepFused(int first_step);
+  void bindCells(const TickTables& tick) const;
+  void drawBodies(const TickTables& tick, int i);
+  void sweepPlain(const TickTables& tick, int first_step);
+  void sweepFused(const TickTables& tick, int first_step);
 
   RelaxSchedule schedule_;
   bool skip_settled_;
-  const TickTables* tick_ = nullptr;
   std::int64_t dispatch_count_ = 0;
   int current_ = 0;  // which of height_ holds the heights
   int slope_threshold_ = 0, diagonal_threshold_ = 0, obstacle_threshold_ = 0;

@@ -83,30 +83,32 @@ wide wideTimes(wide a, int b) {
   if (b < 0) product.high -= a.low;
   return product;
 }
+/// Place of the highest bit, -1 for 0.
+int wideTop(wide a) { return a.high != 0u ? 32 + findMSB(a.high) : findMSB(a.low); }
+/// Shifts by 0..63 bits.
+wide wideUp(wide a, int bits) {
+  if (bits >= 32) return wide(0u, a.low << uint(bits - 32));
+  return bits == 0 ? a : wide(a.low << uint(bits), (a.high << uint(bits)) | (a.low >> uint(32 - bits)));
+}
+/// Bit by bit, as many as the quotient has.
 wide wideFloorDiv(wide a, wide b) {
   bool negative = wideNegative(a);
   wide zero = wide(0u, 0u);
   wide rest = negative ? wideSub(zero, a) : a;
   wide quotient = zero;
-  wide part = zero;
-  for (int bit = 63; bit >= 0; --bit) {
-    part.high = (part.high << 1) | (part.low >> 31);
-    uint next = bit >= 32 ? (rest.high >> uint(bit - 32)) : (rest.low >> uint(bit));
-    part.low = (part.low << 1) | (next & 1u);
-    wide less = wideSub(part, b);
-    if (!wideNegative(less)) {
-      part = less;
-      if (bit >= 32)
-        quotient.high |= 1u << uint(bit - 32);
-      else
-        quotient.low |= 1u << uint(bit);
-    }
+  int places = wideTop(rest) - wideTop(b);
+  wide part = wideUp(b, places > 0 ? places : 0);
+  for (; places >= 0; --places) {
+    wide less = wideSub(rest, part);
+    bool fits = !wideNegative(less);
+    if (fits) rest = less;
+    quotient = wide((quotient.low << 1) | (fits ? 1u : 0u), (quotient.high << 1) | (quotient.low >> 31));
+    part = wide((part.low >> 1) | (part.high << 31), part.high >> 1);
   }
   if (!negative) return quotient;
   wide result = wideSub(zero, quotient);
-  return wideZero(part) ? result : wideSub(result, wide(1u, 0u));
+  return wideZero(rest) ? result : wideSub(result, wide(1u, 0u));
 }
-
 int wideFromQ30(wide a) { return int((a.high << 2) | (a.low >> 30)); }
 
 int minInt(int a, int b) { return min(a, b); }

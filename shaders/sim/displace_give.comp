@@ -18,12 +18,13 @@ void main() {
   if (groupIndex() >= tick.lists[sub_step].receivers.used) return;
   RowChunk chunk = row_chunks[groupIndex()];
   DomainEntry domain = domains[chunk.domain];
+  TileGrid grid = tileGrid(chunk.domain);
   int column = chunk.chunk * kGroup + lane();
   if (column >= domain.width) return;
   int cell = domain.first_cell + chunk.row * domain.width + column;
   wide total = wide(requested_low[cell], requested_high[cell]);
   if (wideZero(total)) return;
-  int at = tileCell(chunk.domain, domain.x0 + column, domain.y0 + chunk.row);
+  int at = tileCell(grid, domain.x0 + column, domain.y0 + chunk.row);
   int room = roomBeneath(height[at], underside[at], tick.obstacle_threshold);
   bool all_fits = !wideNegative(wideSub(wideFrom(room), total));
   // What is let in never exceeds the room, so one word holds it.

@@ -21,6 +21,7 @@ void main() {
   if (groupIndex() >= tick.lists[sub_step].rows.used) return;
   RowChunk chunk = row_chunks[groupIndex()];
   DomainEntry domain = domains[chunk.domain];
+  TileGrid grid = tileGrid(chunk.domain);
   int column = chunk.chunk * kGroup + lane();
   if (column >= domain.width) return;
   int cell = domain.first_cell + chunk.row * domain.width + column;
@@ -28,11 +29,11 @@ void main() {
   if (amount <= 0 || target[cell] == kNoTarget) return;
   int to = domain.first_cell + target[cell];
   // Targets are free cells and sources are not, so a target's height is still what it was.
-  int at = tileCell(chunk.domain, domain.x0 + target[cell] % domain.width, domain.y0 + target[cell] / domain.width);
+  int at = tileCell(grid, domain.x0 + target[cell] % domain.width, domain.y0 + target[cell] / domain.width);
   int room = roomBeneath(height[at], underside[at], tick.obstacle_threshold);
   wide total = wide(requested_low[to], requested_high[to]);
   int share = grantedShare(amount, room, total);
-  height[tileCell(chunk.domain, domain.x0 + column, domain.y0 + chunk.row)] -= share;
+  height[tileCell(grid, domain.x0 + column, domain.y0 + chunk.row)] -= share;
   if (share == 0 || !wideNegative(wideSub(wideFrom(room), total))) return;
   uint before = atomicAdd(granted_low[to], uint(share));
   if (before + uint(share) < before) atomicAdd(granted_high[to], 1u);

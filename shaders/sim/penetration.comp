@@ -38,10 +38,11 @@ void main() {
     int penetrating = 0;
     int end = min(kMaskRows, domain.rows - block.y);
     int at = 0;
+    TileGrid grid = tileGrid(block.owner);
     for (int i = 0; i < end; ++i) {
       int row = block.y + i;
       bool enters = i == 0 || (domain.y0 + row) % kTileSize == 0;  // another tile
-      at = enters ? tileCell(block.owner, domain.x0 + column, domain.y0 + row) : at + kTileSize;
+      at = enters ? tileCell(grid, domain.x0 + column, domain.y0 + row) : at + kTileSize;
       int value = cellOverlap(height[at], bedrock[at], underside[at], tick.obstacle_threshold);
       overlap[domain.first_cell + row * domain.width + column] = value;
       if (value == kFree) free |= 1u << uint(i);

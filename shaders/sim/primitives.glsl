@@ -9,46 +9,52 @@ layout(std430, binding = kBindBodies) readonly buffer Bodies { BodyEntry bodies[
 layout(std430, binding = kBindPoints) readonly buffer Points { int points[]; };
 layout(std430, binding = kBindIndices) readonly buffer Indices { int indices[]; };
 
-/// A primitive: its points, and the rows of cells it lies in, out of its body's; for an edge along x, the columns.
+/// A primitive in its body, with the rows of cells it lies in, out of the body's; for an edge along x, the columns.
 struct Primitive {
-  int body;
   bool is_edge;
+  bool along_y;
   RasterPoint a;
   RasterPoint b;
   RasterPoint c;
-  bool along_y;
   int first;
   int last;
+  int origin_x;
+  int origin_y;
+  int z;
+  ivec4 box;  // x0, y0, x1, y1
+  TileGrid grid;
 };
 
-RasterPoint pointAt(int body, int index) {
-  int from = 3 * (bodies[body].first_point + index);
+RasterPoint pointAt(int first, int index) {
+  int from = 3 * (first + index);
   return RasterPoint(points[from], points[from + 1], points[from + 2]);
 }
 
 /// Primitive `i` of a body: its triangles, then its edges.
 Primitive primitiveAt(int body, int i) {
   Primitive p;
-  p.body = body;
-  p.is_edge = i >= bodies[body].triangle_count;
+  p.origin_x = bodies[body].origin_x;
+  p.origin_y = bodies[body].origin_y;
+  p.z = bodies[body].z;
+  p.box = ivec4(bodies[body].x0, bodies[body].y0, bodies[body].x1, bodies[body].y1);
+  p.grid = tileGrid(bodies[body].domain);
+  int triangle_count = bodies[body].triangle_count;
+  p.is_edge = i >= triangle_count;
+  int at = p.is_edge ? bodies[body].first_edge + 2 * (i - triangle_count) : bodies[body].first_triangle + 3 * i;
+  int first_point = bodies[body].first_point;
+  p.a = pointAt(first_point, indices[at]);
+  p.b = pointAt(first_point, indices[at + 1]);
+  p.c = p.b;
   p.along_y = true;
-  if (p.is_edge) {
-    int at = bodies[body].first_edge + 2 * (i - bodies[body].triangle_count);
-    p.a = pointAt(body, indices[at]);
-    p.b = pointAt(body, indices[at + 1]);
-    p.c = p.b;
+  if (p.is_edge)
     p.along_y = rasterEdge(p.a, p.b).along_y != 0;
-  } else {
-    int at = bodies[body].first_triangle + 3 * i;
-    p.a = pointAt(body, indices[at]);
-    p.b = pointAt(body, indices[at + 1]);
-    p.c = pointAt(body, indices[at + 2]);
-  }
+  else
+    p.c = pointAt(first_point, indices[at + 2]);
   int low = p.along_y ? min(p.a.y, min(p.b.y, p.c.y)) : min(p.a.x, min(p.b.x, p.c.x));
   int high = p.along_y ? max(p.a.y, max(p.b.y, p.c.y)) : max(p.a.x, max(p.b.x, p.c.x));
-  int origin = p.along_y ? bodies[body].origin_y : bodies[body].origin_x;
-  p.first = max(floorDiv(low, kSubcells) + origin, p.along_y ? bodies[body].y0 : bodies[body].x0);
-  p.last = min(floorDiv(high, kSubcells) + origin, (p.along_y ? bodies[body].y1 : bodies[body].x1) - 1);
+  int origin = p.along_y ? p.origin_y : p.origin_x;
+  p.first = max(floorDiv(low, kSubcells) + origin, p.along_y ? p.box.y : p.box.x);
+  p.last = min(floorDiv(high, kSubcells) + origin, (p.along_y ? p.box.w : p.box.z) - 1);
   return p;
 }
 
@@ -57,19 +63,17 @@ void lower(int at, int reached) {
 }
 
 void drawTriangleRow(Primitive p, RasterTriangle t, int y) {
-  int body = p.body;
-  int domain = bodies[body].domain;
-  RasterSpan whole = RasterSpan(bodies[body].x0 - bodies[body].origin_x, bodies[body].x1 - bodies[body].origin_x);
-  int row = y - bodies[body].origin_y;
+  RasterSpan whole = RasterSpan(p.box.x - p.origin_x, p.box.z - p.origin_x);
+  int row = y - p.origin_y;
   RasterSpan span = triangleSpan(t, row, whole);
   if (span.end <= span.begin) return;
-  int first = heightInWorld(bodies[body].z, triangleHeight(t, span.begin, row));
-  int lowest = heightInWorld(bodies[body].z, t.lowest);
-  int highest = heightInWorld(bodies[body].z, t.highest);
-  int x = bodies[body].origin_x + span.begin;
+  int first = heightInWorld(p.z, triangleHeight(t, span.begin, row));
+  int lowest = heightInWorld(p.z, t.lowest);
+  int highest = heightInWorld(p.z, t.highest);
+  int x = p.origin_x + span.begin;
   int count = span.end - span.begin;
   for (int i = 0; i < count;) {
-    int at = tileCell(domain, x + i, y);
+    int at = tileCell(p.grid, x + i, y);
     int stop = min(count, i + kTileSize - (x + i) % kTileSize);  // up to the tile's border
     for (; i < stop; ++i) lower(at++, triangleHeightAlong(first, t.step, t.step_fraction, i, lowest, highest));
   }
@@ -77,14 +81,12 @@ void drawTriangleRow(Primitive p, RasterTriangle t, int y) {
 
 /// `u`: a row where the edge runs along y, else a column.
 void drawEdgeColumn(Primitive p, RasterEdge e, int u) {
-  int body = p.body;
-  EdgeColumn column = edgeColumn(e, u - (p.along_y ? bodies[body].origin_y : bodies[body].origin_x));
-  int v_origin = p.along_y ? bodies[body].origin_x : bodies[body].origin_y;
-  int first = max(column.first + v_origin, p.along_y ? bodies[body].x0 : bodies[body].y0);
-  int last = min(column.last + v_origin, (p.along_y ? bodies[body].x1 : bodies[body].y1) - 1);
-  int domain = bodies[body].domain;
-  int reached = heightInWorld(bodies[body].z, column.height);
-  for (int v = first; v <= last; ++v) lower(tileCell(domain, p.along_y ? v : u, p.along_y ? u : v), reached);
+  EdgeColumn column = edgeColumn(e, u - (p.along_y ? p.origin_y : p.origin_x));
+  int v_origin = p.along_y ? p.origin_x : p.origin_y;
+  int first = max(column.first + v_origin, p.along_y ? p.box.x : p.box.y);
+  int last = min(column.last + v_origin, (p.along_y ? p.box.z : p.box.w) - 1);
+  int reached = heightInWorld(p.z, column.height);
+  for (int v = first; v <= last; ++v) lower(tileCell(p.grid, p.along_y ? v : u, p.along_y ? u : v), reached);
 }
 
 /// Draws rows (or columns) begin..end - 1, every `stride`-th.

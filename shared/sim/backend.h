@@ -32,8 +32,9 @@ struct BackendMemory {
   std::int64_t device_bytes = 0;
 };
 
-/// Runs stages 4 to 9 of planned ticks, on one state until forget(). Backends differ in schedule only: the same state and plan give the
-/// same bits. One thread at a time, any thread.
+/// Runs stages 4 to 9 of planned ticks, on one state until forget(). A tick goes through three calls, in their order,
+/// and may overlap with the next: submit(1), settle(1), submit(2), collect(1), settle(2), ... Backends differ in
+/// schedule only: the same state and plan give the same bits. One thread at a time, any thread.
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -41,17 +42,20 @@ class Backend {
   /// What computes besides the processor, as its driver names it; "none (native)" where nothing does.
   virtual std::string renderer() const = 0;
 
-  /// Takes the state's tiles to the new tick: their versions, hashes, sums and wake masks, and the state's sums. The
-  /// cells themselves, and the effect's differences, may follow with collect().
-  /// Errors, which leave the state untouched: a device that is lost or has not the memory.
-  virtual Result<TickEffect> run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) = 0;
+  /// Begins a tick. The tick before must be settled (asserted), all earlier ones collected. The base must live on.
+  /// Errors, which leave the backend as it was: a device that is lost or has not the memory.
+  [[nodiscard]] virtual Status submit(TickPlan plan, const BaseTerrain& base, const WorldState& state) = 0;
 
-  /// Brings the cells that the oldest uncollected run changed to the state's tiles, and fills in the differences of
-  /// its changes. One run may be uncollected when the next one begins (asserted).
+  /// Ends the submitted tick: takes the state's tiles to its versions, hashes, sums and wake masks, and the state's
+  /// sums. The cells themselves, and the effect's differences, may follow with collect(). Errors, which leave the state
+  /// untouched: the device is lost, or has not the memory.
+  virtual Result<TickEffect> settle(WorldState& state) = 0;
+
+  /// Brings the cells that the settled tick changed to the state's tiles, and fills in the differences of its changes.
   /// Errors: the device is lost; the state is then of no further use.
   [[nodiscard]] virtual Status collect(WorldState& state, std::vector<TileChange>& changes) = 0;
 
-  /// Drops everything kept of a state, runs not collected too: the next run may be on another one.
+  /// Drops everything kept of a state, unfinished ticks too: the next tick may be of another one.
   virtual void forget() = 0;
 
   virtual BackendMemory memory() const = 0;
@@ -64,9 +68,14 @@ struct NativeOptions {
 };
 std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options = {});
 
-/// The active tiles of a plan in its order, dormant ones made live; `made_live` lists those.
-std::vector<Tile*> takeTiles(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool,
-                             std::vector<Tile*>& made_live);
+/// The active tiles of a tick.
+struct ActiveTiles {
+  std::vector<Tile*> tiles;                  // in the plan's order
+  std::vector<std::unique_ptr<Tile>> fresh;  // those among them that are not in the state's store yet, in that order
+};
+
+/// Finds a plan's tiles in the state and makes those that are dormant.
+ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const WorldState& state, ThreadPool& pool);
 
 /// What a tick did to one active tile. Where no cell changed the box is empty and the sums do not matter.
 struct TileOutcome {
@@ -75,11 +84,11 @@ struct TileOutcome {
   std::int64_t ground = 0;
 };
 
-/// Ends a tick: takes active tiles to its versions, hashes, sums and wake masks, and keeps the state's sums.
-/// @param tiles  takeTiles, with as many outcomes
-/// @return       what changed: the outcomes' changes with all but their difference filled in
-std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, const std::vector<Tile*>& tiles,
-                                   const std::vector<Tile*>& made_live, std::vector<TileOutcome> outcomes,
-                                   WorldState& state);
+/// Ends a tick: makes fresh tiles live, takes all to their new versions, hashes, sums and wake masks, and keeps the
+/// state's sums.
+/// @param outcomes  of each active tile
+/// @return          what changed: the outcomes' changes with all but their difference filled in
+std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, ActiveTiles active,
+                                   std::vector<TileOutcome> outcomes, WorldState& state);
 
 }  // namespace spoor

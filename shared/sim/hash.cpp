@@ -1,4 +1,4 @@
-// Stage hash: what the tick changed goes back to the tiles, with their hashes, sums and wake masks.
+// Stage hash: what the tick changed goes back to the tiles, and their hashes and sums are found.
 #include <cstring>
 
 #include "shared/sim/native_stages.h"
@@ -23,8 +23,7 @@ bool fetchCells(const WorkArea& area, const Run& run, Tile& tile, PlaneCells& be
 
 }  // namespace
 
-std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& plan, const std::vector<Tile*>& made_live,
-                                WorldState& state) {
+std::vector<TileOutcome> runHash(const NativeContext& context) {
   WorkArea& area = context.area;
   std::vector<TileOutcome> outcomes(area.tiles.size());
   context.pool.forEach(int(area.tiles.size()), [&](int i, int) {
@@ -36,7 +35,7 @@ std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& pl
         context.kernels.hashTile(tile.height().data(), tile.at.x * kSize, tile.at.y * kSize, int(Plane::height)),
         context.kernels.sum(tile.height().data(), rules::kTileCells)};
   });
-  return commitTick(plan, context.pack.sweeps_per_tick, area.tiles, made_live, std::move(outcomes), state);
+  return outcomes;
 }
 
 }  // namespace spoor

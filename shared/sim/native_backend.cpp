@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "shaders/rules/exchange.h"
+#include "shared/base/assert.h"
 #include "shared/sim/native_stages.h"
 
 namespace spoor {
@@ -29,13 +32,22 @@ class NativeBackend final : public Backend {
 
   std::string renderer() const override { return "none (native)"; }
 
-  Result<TickEffect> run(const TickPlan& plan, const BaseTerrain& base, WorldState& state) override {
-    const NativeContext context{base.pack(), *kernels_, pool_, area_};
+  Status submit(TickPlan plan, const BaseTerrain& base, const WorldState&) override {
+    SPOOR_ASSERT(!submitted_);
+    submitted_.emplace(std::move(plan), &base);
+    return {};
+  }
+
+  Result<TickEffect> settle(WorldState& state) override {
+    SPOOR_ASSERT(submitted_.has_value());
+    const auto [plan, base] = *std::exchange(submitted_, std::nullopt);
+    const NativeContext context{base->pack(), *kernels_, pool_, area_};
     TickEffect effect;
-    std::vector<Tile*> made_live;
+    ActiveTiles active;
     {
       StageTimer timer(effect.stage_ms, Stage::active);
-      made_live = area_.gather(plan, base, state, pool_);
+      active = takeTiles(plan, *base, state, pool_);
+      area_.gather(active.tiles, pool_);
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
     effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
@@ -46,14 +58,14 @@ class NativeBackend final : public Backend {
     }
     {
       StageTimer timer(effect.stage_ms, Stage::hash);
-      effect.changes = runHash(context, plan, made_live, state);
+      effect.changes = commitTick(plan, base->pack().sweeps_per_tick, std::move(active), runHash(context), state);
     }
     return effect;
   }
 
-  Status collect(WorldState&, std::vector<TileChange>&) override { return {}; }  // run() has done it all
+  Status collect(WorldState&, std::vector<TileChange>&) override { return {}; }  // settle() has done it all
 
-  void forget() override {}  // a tick starts from the state alone
+  void forget() override { submitted_.reset(); }
 
   BackendMemory memory() const override {
     std::size_t cells = area_.height.capacity() + area_.bedrock.capacity() + area_.underside.capacity() +
@@ -114,6 +126,7 @@ class NativeBackend final : public Backend {
   WorkArea area_;
   std::vector<std::int32_t> underside_before_;
   std::vector<DomainWork> domains_;
+  std::optional<std::pair<TickPlan, const BaseTerrain*>> submitted_;
 };
 
 }  // namespace

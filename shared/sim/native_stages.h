@@ -62,8 +62,7 @@ void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t 
 /// Returns the pairs of cells visited.
 std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled);
 
-/// Stage hash: brings changed cells back to their tiles, with hash, sums and wake mask, and says what changed.
-std::vector<TileChange> runHash(const NativeContext& context, const TickPlan& plan, const std::vector<Tile*>& made_live,
-                                WorldState& state);
+/// Stage hash: brings changed cells back to their tiles. Returns what became of each active tile, for commitTick.
+std::vector<TileOutcome> runHash(const NativeContext& context);
 
 }  // namespace spoor

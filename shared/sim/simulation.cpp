@@ -1,5 +1,7 @@
 #include "shared/sim/simulation.h"
 
+#include <utility>
+
 #include "shared/base/assert.h"
 
 namespace spoor {
@@ -18,34 +20,46 @@ Result<TickResult> Simulation::step(std::span<const Pose> poses) {
 }
 
 Status Simulation::begin(std::span<const Pose> poses) {
-  SPOOR_ASSERT(in_flight_.size() < kTicksInFlight);
+  SPOOR_ASSERT(inFlight() < kTicksInFlight);
   if (Status status = validatePoses(base_->pack(), poses); !status) return status;
-  StageTimes planning{};
-  Result<TickPlan> planned = [&] {
-    StageTimer timer(planning, Stage::active);
+  if (Status status = settle(); !status) return status;
+  TickResult result;
+  Result<TickPlan> plan = [&] {
+    StageTimer timer(result.effect.stage_ms, Stage::active);
     return planTick(base_->pack(), reach_q_, state_, poses);
   }();
-  if (!planned) return Error{planned.error()};
-  const TickPlan& plan = *planned;
-  auto effect = backend_->run(plan, *base_, state_);
-  if (!effect) return Error{effect.error()};
-  state_.tick = plan.tick;
-  state_.previous_poses = std::move(state_.poses);
-  state_.poses.assign(poses.begin(), poses.end());
+  if (!plan) return Error{plan.error()};
+  result.update.tick = plan->tick;
+  result.update.poses.assign(poses.begin(), poses.end());
+  result.too_fast = plan->too_fast;
+  if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status) return status;
+  submitted_ = std::move(result);
+  return {};
+}
 
-  TickResult& result = in_flight_.emplace_back();
+/// Takes the state to the submitted tick, if there is one.
+Status Simulation::settle() {
+  if (!submitted_) return {};
+  auto effect = backend_->settle(state_);
+  if (!effect) return Error{"tick " + std::to_string(submitted_->update.tick) + ": " + effect.error()};
+  TickResult result = *std::exchange(submitted_, std::nullopt);
+  for (int stage = 0; stage < kStageCount; ++stage) effect->stage_ms[stage] += result.effect.stage_ms[stage];
   result.effect = std::move(*effect);
-  result.effect.stage_ms[int(Stage::active)] += planning[int(Stage::active)];
-  result.too_fast = plan.too_fast;
-  result.update.tick = state_.tick;
-  result.update.poses = state_.poses;
-  StageTimer timer(result.effect.stage_ms, Stage::hash);
-  result.update.state_hash = stateHash(state_);
+  state_.tick = result.update.tick;
+  state_.previous_poses = std::exchange(state_.poses, result.update.poses);
+  result.ledger = state_.ledger;
+  {
+    StageTimer timer(result.effect.stage_ms, Stage::hash);
+    result.update.state_hash = stateHash(state_);
+  }
+  in_flight_.push_back(std::move(result));
   return {};
 }
 
 Result<TickResult> Simulation::finish() {
-  SPOOR_ASSERT(!in_flight_.empty());
+  SPOOR_ASSERT(inFlight() > 0);
+  if (in_flight_.empty())
+    if (Status status = settle(); !status) return Error{status.error()};
   TickResult result = std::move(in_flight_.front());
   in_flight_.pop_front();
   {

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "shared/sim/backend.h"
@@ -12,6 +13,7 @@ namespace spoor {
 struct TickResult {
   TickUpdate update;      // as published
   TickEffect effect;      // its `changes` are those encoded in `update`
+  Ledger ledger;          // after this tick
   bool too_fast = false;  // a body moved farther per sub-step than one cell; its trail may have gaps
 };
 
@@ -26,28 +28,34 @@ class Simulation {
   /// Runs one tick that takes the bodies to `poses`: begin() and finish().
   Result<TickResult> step(std::span<const Pose> poses);
 
-  /// The first half: plans the tick and runs its stages. Afterwards the state's hash, ledger and poses are the new
-  /// tick's, its cells may not be yet. Two ticks may be begun and not finished (asserted), so that one is encoded and
-  /// published while a device works on the next.
-  /// Errors, which leave the state untouched: poses that validatePoses refuses, a tick that planTick finds too large, a
-  /// device that is lost or has not the memory.
+  /// The first half: plans the tick and hands it to the backend. Where that computes on a device, this may return long
+  /// before the device is done: time to finish the tick before. Two ticks may be begun and not finished (asserted).
+  /// Errors, which leave the state untouched: poses that validatePoses refuses, a tick that planTick finds too large.
+  /// Errors after which the session cannot go on: a device that is lost or has not the memory.
   [[nodiscard]] Status begin(std::span<const Pose> poses);
 
-  /// The second half, of the oldest tick begun (asserted): its changed cells, encoded.
+  /// The second half, of the oldest tick begun (asserted): waits for it, and encodes what it changed.
   /// Errors: the device is lost; the session cannot go on.
   Result<TickResult> finish();
 
   static constexpr std::size_t kTicksInFlight = 2;
+  /// Ticks begun and not finished.
+  std::size_t inFlight() const { return in_flight_.size() + (submitted_ ? 1 : 0); }
 
+  /// After the last tick finished, but where another has been begun since: then tick, poses, hashes and sums may be of
+  /// that one already, and cells of either.
   const WorldState& state() const { return state_; }
   const Backend& backend() const { return *backend_; }
 
  private:
+  Status settle();
+
   const BaseTerrain* base_;
   std::vector<std::int32_t> reach_q_;  // bodyReaches
   std::unique_ptr<Backend> backend_;
   WorldState state_;
-  std::deque<TickResult> in_flight_;
+  std::optional<TickResult> submitted_;  // with the backend; without its effect, and the state knows nothing of it
+  std::deque<TickResult> in_flight_;     // settled, their cells not collected
 };
 
 }  // namespace spoor

@@ -23,35 +23,31 @@ WakeMask wakeMaskOf(const TileChange& change, int reach) {
 
 }  // namespace
 
-std::vector<Tile*> takeTiles(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool,
-                             std::vector<Tile*>& made_live) {
-  std::vector<Tile*> tiles(plan.active.size());
+ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const WorldState& state, ThreadPool& pool) {
+  ActiveTiles active;
   std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    tiles[i] = state.tiles.find(plan.active[i]);
-    if (tiles[i] == nullptr) missing.push_back(i);
+  for (const TileCoordinate at : plan.active) {
+    active.tiles.push_back(const_cast<Tile*>(state.tiles.find(at)));
+    if (active.tiles.back() == nullptr) missing.push_back(active.tiles.size() - 1);
   }
-  std::vector<std::unique_ptr<Tile>> fresh(missing.size());
-  pool.forEach(int(missing.size()), [&](int i, int) { fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick); });
-  made_live.clear();
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    tiles[missing[i]] = &state.tiles.insert(std::move(fresh[i]));
-    made_live.push_back(tiles[missing[i]]);
-  }
-  return tiles;
+  active.fresh.resize(missing.size());
+  pool.forEach(int(missing.size()), [&](int i, int) {
+    active.fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick);
+    active.tiles[missing[i]] = active.fresh[i].get();
+  });
+  return active;
 }
 
-std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, const std::vector<Tile*>& tiles,
-                                   const std::vector<Tile*>& made_live, std::vector<TileOutcome> outcomes,
-                                   WorldState& state) {
+std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, ActiveTiles active,
+                                   std::vector<TileOutcome> outcomes, WorldState& state) {
   const int reach = std::clamp(sweeps_per_tick, 1, kSize);
   std::vector<TileChange> changes;
-  auto next_made = made_live.begin();
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    Tile& tile = *tiles[i];
+  auto next_fresh = active.fresh.begin();
+  for (std::size_t i = 0; i < active.tiles.size(); ++i) {
+    Tile& tile = *active.tiles[i];
     TileChange& change = outcomes[i].change;
-    const bool is_new = next_made != made_live.end() && *next_made == &tile;
-    if (is_new) ++next_made;
+    const bool is_new = next_fresh != active.fresh.end() && next_fresh->get() == &tile;
+    if (is_new) state.tiles.insert(std::move(*next_fresh++));
     const bool changed = change.width > 0;
     if (!changed && !is_new && tile.wake_mask == 0) continue;
     const std::uint64_t hash_before = is_new ? 0 : tileStateHash(tile);

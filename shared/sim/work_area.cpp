@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "shared/base/assert.h"
-#include "shared/sim/backend.h"
 
 namespace spoor {
 namespace {
@@ -25,17 +24,15 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
 
 }  // namespace
 
-std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state,
-                                    ThreadPool& pool) {
-  const int count = int(plan.active.size());
-  std::vector<Tile*> made;
-  tiles = takeTiles(plan, base, state, pool, made);
+void WorkArea::gather(const std::vector<Tile*>& active, ThreadPool& pool) {
+  tiles = active;
+  const int count = int(tiles.size());
   runs.clear();
   bands.clear();
   run_of_tile.clear();
   std::size_t cells = 0, segments = 0;
   for (int i = 0; i < count; ++i) {
-    const TileCoordinate at = plan.active[i];
+    const TileCoordinate at = tiles[i]->at;
     if (bands.empty() || bands.back().tile_y != at.y) bands.push_back({at.y, int(runs.size()), 0});
     if (bands.back().run_count == 0 || runs.back().first.x + runs.back().tile_count != at.x) {
       runs.push_back({at, 0, cells, segments});
@@ -61,7 +58,6 @@ std::vector<Tile*> WorkArea::gather(const TickPlan& plan, const BaseTerrain& bas
       std::memcpy(bedrock.data() + to, tiles[i]->bedrock->data() + row * kSize, kSize * sizeof(std::int32_t));
     }
   });
-  return made;
 }
 
 const Run& WorkArea::runAt(std::int32_t x, std::int32_t y) const {

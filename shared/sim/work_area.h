@@ -42,8 +42,8 @@ struct WorkArea {
   std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
 
-  /// Makes the plan's dormant tiles live, and gathers all active ones. Returns the tiles made live.
-  std::vector<Tile*> gather(const TickPlan& plan, const BaseTerrain& base, WorldState& state, ThreadPool& pool);
+  /// Lays out the cells of active tiles, which come in (y, x) order.
+  void gather(const std::vector<Tile*>& active, ThreadPool& pool);
 
   /// The run that holds a cell. It must be active (asserted).
   const Run& runAt(std::int32_t x, std::int32_t y) const;

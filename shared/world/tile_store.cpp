@@ -53,11 +53,6 @@ Tile& TileStore::insert(std::unique_ptr<Tile> tile) {
   return *slot;
 }
 
-void TileStore::remove(Tile& tile) {
-  SPOOR_ASSERT(tile.awake_index < 0);
-  tiles_.erase(keyOf(tile.at));
-}
-
 void TileStore::setWake(Tile& tile, WakeMask mask) {
   if (mask != 0 && tile.awake_index < 0) {
     tile.awake_index = std::int32_t(awake_.size());

@@ -61,9 +61,6 @@ class TileStore {
   /// Makes a dormant tile live. It must have been dormant (asserted).
   Tile& insert(std::unique_ptr<Tile> tile);
 
-  /// Makes a live tile that is asleep dormant again (asserted), as if it had never been live.
-  void remove(Tile& tile);
-
   /// Sets a tile's wake mask and keeps the list of awake tiles.
   void setWake(Tile& tile, WakeMask mask);
   /// Tiles whose wake mask is not 0, in no particular order: for filling ordered sets only.
