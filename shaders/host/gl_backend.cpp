@@ -300,7 +300,8 @@ Result<std::unique_ptr<Backend>> openBackend(const GlOptions& options) {
     return Error{"the renderer is software (" + (*context)->renderer() + ")"};
   auto limits = checkLimits(**context);
   if (!limits) return Error{limits.error()};
-  if (options.say) options.say(describe(*limits));
+  if (options.say)
+    for (const std::string& line : describe(*limits)) options.say("gl: " + line);
   const bool fused = options.schedule == GlOptions::Schedule::fused ||
                      (options.schedule == GlOptions::Schedule::by_renderer && !limits->software);
   try {

@@ -8,22 +8,25 @@ namespace spoor {
 
 namespace {
 
-/// A limit, and the least of it that the compute pipeline runs with.
+/// A limit, and the least of it that the compute pipeline runs with (of an alignment: the most).
 struct Need {
   const char* name;
   std::int64_t found;
   std::int64_t needed;
+  bool at_most = false;
+  bool met() const { return at_most ? found <= needed : found >= needed; }
 };
 
-std::array<Need, 8> needs(const GlLimits& limits) {
-  return {{{"OpenGL version * 10", limits.version_number, 45},
+std::array<Need, 9> needs(const GlLimits& limits) {
+  return {{{"ten times the OpenGL version", limits.version_number, 45},
            {"GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limits.storage_block_bytes, std::int64_t(1) << 27},
            {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", limits.storage_bindings, 16},
            {"GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS", limits.compute_storage_blocks, 12},
            {"GL_MAX_COMPUTE_SHARED_MEMORY_SIZE", limits.shared_bytes, 32768},
-           {"GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS", limits.group_invocations, 256},
-           {"GL_MAX_COMPUTE_WORK_GROUP_SIZE[0]", limits.group_size_x, 256},
-           {"GL_MAX_COMPUTE_WORK_GROUP_COUNT[0]", limits.group_count_x, 65535}}};
+           {"GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS", limits.group_invocations, 1024},
+           {"GL_MAX_COMPUTE_WORK_GROUP_SIZE[0]", limits.group_size_x, 1024},
+           {"GL_MAX_COMPUTE_WORK_GROUP_COUNT[0]", limits.group_count_x, 65535},
+           {"GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT", limits.table_alignment, 256, true}}};
 }
 
 int number(GLenum name) {
@@ -56,6 +59,7 @@ Result<GlLimits> checkLimits(const GlContext& context) {
   limits.group_invocations = number(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
   limits.group_size_x = numberOfX(GL_MAX_COMPUTE_WORK_GROUP_SIZE);
   limits.group_count_x = numberOfX(GL_MAX_COMPUTE_WORK_GROUP_COUNT);
+  limits.table_alignment = number(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT);
   limits.software = context.software();
   limits.reports_resets = number(GL_RESET_NOTIFICATION_STRATEGY) == GL_LOSE_CONTEXT_ON_RESET;
   if (const Status status = limitsStatus(limits); !status) return Error{status.error()};
@@ -65,21 +69,22 @@ Result<GlLimits> checkLimits(const GlContext& context) {
 Status limitsStatus(const GlLimits& limits) {
   std::string lacking;
   for (const Need& need : needs(limits))
-    if (need.found < need.needed)
+    if (!need.met())
       lacking += std::string(lacking.empty() ? "" : "; ") + need.name + " is " + std::to_string(need.found) + ", " +
-                 std::to_string(need.needed) + " is needed";
+                 std::to_string(need.needed) + (need.at_most ? " at most" : "") + " is needed";
   if (lacking.empty()) return {};
   return Error{"OpenGL of " + limits.renderer + " does not suffice: " + lacking};
 }
 
-std::string describe(const GlLimits& limits) {
-  std::string text = "renderer " + limits.renderer + " by " + limits.vendor +
-                     (limits.software ? " (software)\n" : " (hardware)\n") + "OpenGL " + limits.version + ", GLSL " +
-                     limits.glsl + (limits.reports_resets ? ", reports resets\n" : ", does not report resets\n");
+std::vector<std::string> describe(const GlLimits& limits) {
+  std::vector<std::string> lines = {
+      "renderer " + limits.renderer + " by " + limits.vendor + (limits.software ? " (software)" : " (hardware)"),
+      "OpenGL " + limits.version + ", GLSL " + limits.glsl +
+          (limits.reports_resets ? ", reports resets" : ", does not report resets")};
   for (const Need& need : needs(limits))
-    text += std::string(need.name) + " " + std::to_string(need.found) + " (of " + std::to_string(need.needed) +
-            " needed)\n";
-  return text;
+    lines.push_back(std::string(need.name) + " " + std::to_string(need.found) + " (" + std::to_string(need.needed) +
+                    (need.at_most ? " at most)" : " needed)"));
+  return lines;
 }
 
 }  // namespace spoor

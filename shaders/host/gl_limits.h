@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "shaders/host/gl_context.h"
 
@@ -18,6 +19,7 @@ struct GlLimits {
   int group_invocations = 0;             ///< GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS
   int group_size_x = 0;                  ///< GL_MAX_COMPUTE_WORK_GROUP_SIZE, x
   int group_count_x = 0;                 ///< GL_MAX_COMPUTE_WORK_GROUP_COUNT, x
+  int table_alignment = 0;               ///< GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT
   bool software = false;
   bool reports_resets = false;  ///< whether contextStatus() can tell of a lost context
 };
@@ -28,7 +30,7 @@ Result<GlLimits> checkLimits(const GlContext& context);
 /// Errors: every limit that is lower than the compute pipeline needs, with what was found and what is needed.
 Status limitsStatus(const GlLimits& limits);
 
-/// Several lines for printing, each with its end.
-std::string describe(const GlLimits& limits);
+/// Lines for printing.
+std::vector<std::string> describe(const GlLimits& limits);
 
 }  // namespace spoor

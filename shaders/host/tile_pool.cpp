@@ -63,15 +63,25 @@ Status TilePool::makeRoom(int missing, std::int32_t tick) {
   SPOOR_ASSERT(limit <= most_slots_);
   const int wanted = std::min(std::max(int(slots_.size()) + lacking, 2 * int(slots_.size())), limit);
   if (wanted > int(slots_.size())) {
-    if (Status status = height_.reserve(wanted * kPlaneBytes); !status) return status;
-    if (Status status = bedrock_.reserve(wanted * kPlaneBytes); !status) return status;
-    const int before = int(slots_.size());
-    slots_.resize(std::size_t(wanted));
-    for (int slot = before; slot < wanted; ++slot) free_.push_back(slot);
-    std::ranges::sort(free_, std::greater<>());
+    const Status grown = grow(wanted);
     lacking = missing - int(free_.size());
+    const int idle = int(slots_.size()) - int(free_.size()) - in_use_now;
+    if (!grown && idle < lacking) return grown;
+    if (!grown) {
+      say_(grown.error() + "; the tile pool stays at " + std::to_string(slots_.size()) + " tiles");
+      tile_limit_ = std::max(int(slots_.size()), 1);
+    }
   }
   if (lacking > 0) evict(lacking, tick);
+  return {};
+}
+
+Status TilePool::grow(int slot_count) {
+  if (Status status = height_.reserve(slot_count * kPlaneBytes); !status) return status;
+  if (Status status = bedrock_.reserve(slot_count * kPlaneBytes); !status) return status;
+  for (int slot = int(slots_.size()); slot < slot_count; ++slot) free_.push_back(slot);
+  slots_.resize(std::size_t(slot_count));
+  std::ranges::sort(free_, std::greater<>());
   return {};
 }
 

@@ -45,6 +45,7 @@ class TilePool {
   };
 
   Status makeRoom(int missing, std::int32_t tick);
+  Status grow(int slot_count);
   void evict(int count, std::int32_t tick);
   void copyToDevice(std::span<Tile* const> tiles, std::span<const int> slots, std::vector<int> fresh);
 

@@ -89,6 +89,38 @@ def clients_and_replay_end_on_the_servers_hash(scratch):
         expect(code == 0 and report["server_hash"] in out, f"replay: {out} {err}")
 
 
+def a_session_on_either_backend_verifies_on_the_other(scratch):
+    code, devices, err = run("spoor-server", "--list-devices")
+    expect(code == 0 and devices.strip(), err)
+    if "OpenGL" not in devices:
+        print(f"not run: no device for gl: {devices}")
+        return
+    hashes = {}
+    for backend in ("native", "gl"):
+        server = Server(f"--scene={SOURCE}/scenes/dozer.toml", f"--backend={backend}", "--ticks=40", "--rate=0", "--wait-clients=1",
+                        f"--session={scratch}/{backend}.session", f"--json={scratch}/{backend}.json")
+        client = server.join("client", f"--out={scratch}/{backend}")
+        code, out, err = finish(client)
+        expect(code == 0, f"the client failed with {code}: {err}")
+        code, table, err = finish(server.process)
+        expect(code == 0, f"the server failed with {code}: {table} {err}")
+        report = json.loads((scratch / f"{backend}.json").read_text())
+        expect(report["backend"].startswith(backend) and report["ledger"]["error"] == 0, str(report))
+        expect((report["renderer"] == "none (native)") == (backend == "native"), report["renderer"])
+        hashes[backend] = report["server_hash"]
+        expect(client_hash(out) == hashes[backend], "the client's hash is another")
+    expect(hashes["native"] == hashes["gl"], f"{hashes}")
+    for recorded, backend in (("native", "gl"), ("gl", "native"), ("gl", "auto")):
+        code, out, err = run("spoor-replay", "verify", scratch / f"{recorded}.session", f"--backend={backend}")
+        expect(code == 0 and hashes["gl"] in out, f"{recorded} on {backend}: {out} {err}")
+        if backend == "auto":
+            expect(re.search(r"^backend auto: (gl|native)", err, re.M), f"auto does not say what it took: {err}")
+    code, out, err = run("spoor-replay", "verify", scratch / "gl.session", "--backend=abacus")
+    expect(code == 1 and "'abacus' is none of auto, gl, native" in err, f"{code} {out} {err}")
+    code, out, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--port=0", "--backend=gl", "--gl-device=77")
+    expect(code == 1 and "77" in err, f"{code} {out} {err}")
+
+
 def replay_names_the_damaged_record(scratch):
     session = scratch / "box.session"
     code, _, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--port=0", "--ticks=20", "--rate=0", f"--session={session}")
@@ -144,6 +176,7 @@ def bad_scenes_name_file_key_and_reason(scratch):
 
 CASES = [
     clients_and_replay_end_on_the_servers_hash,
+    a_session_on_either_backend_verifies_on_the_other,
     replay_names_the_damaged_record,
     a_client_says_in_one_line_why_it_cannot_join,
     a_client_says_that_the_server_went_away,
