@@ -245,6 +245,7 @@ void GlStages::displace(const TickTables& tick, int i) {
   dispatchListed(rows);
   receivers_.bind(rules::kBindRowChunks);
   use(displace_give_, i);
+  setUniform(2, step.first_step);
   dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, receivers)));
 }
 

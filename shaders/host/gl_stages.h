@@ -53,6 +53,7 @@ class GlStages {
   // DomainEntry::first_cell.
   const GrowingBuffer& height() const { return height_[current_]; }
   const GrowingBuffer& underside() const { return underside_; }
+  const GrowingBuffer& tileStates() const { return tile_states_; }
   const GrowingBuffer& overlap() const { return overlap_; }
   const GrowingBuffer& target() const { return target_; }
 

@@ -74,6 +74,14 @@ struct RasterSpan {
   int end;
 };
 
+/// The cells whose centres lie in [low, high]: a triangle covers no others in a direction in which it reaches so far.
+RULE RasterSpan centresBetween(int low, int high) {
+  RasterSpan span;
+  span.begin = -floorDiv(kSubcells / 2 - low, kSubcells);
+  span.end = floorDiv(high - kSubcells / 2, kSubcells) + 1;
+  return span;
+}
+
 /// The cells of a row whose centres lie on the inner side of the edge p -> q, out of those of `span`.
 RULE RasterSpan clipToEdge(RasterPoint p, RasterPoint q, int row, RasterSpan span) {
   int dx = q.x - p.x;

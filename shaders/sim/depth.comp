@@ -18,9 +18,8 @@ void main() {
   int primitive = block.x + lane();
   if (primitive >= bodies[block.owner].triangle_count + bodies[block.owner].edge_count) return;
   Primitive p = primitiveAt(block.owner, primitive);
-  int rows = p.last - p.first + 1;
-  if (rows <= kRowsOfSmall) {
-    drawRows(p, p.first, p.last + 1, 1);
+  if (p.end - p.first <= kRowsOfSmall) {
+    drawRows(p, p.first, p.end, 1);
     return;
   }
   int entry = atomicAdd(tick.lists[sub_step].large.used, 1);

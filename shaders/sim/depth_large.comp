@@ -13,5 +13,5 @@ void main() {
   int entry = groupIndex() / kLargeParts;
   if (entry >= tick.lists[sub_step].large.used) return;
   Primitive p = primitiveAt(large[entry].x, large[entry].y);
-  drawRows(p, p.first + groupIndex() % kLargeParts * kGroup + lane(), p.last + 1, kLargeParts * kGroup);
+  drawRows(p, p.first + groupIndex() % kLargeParts * kGroup + lane(), p.end, kLargeParts * kGroup);
 }

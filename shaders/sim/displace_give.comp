@@ -1,5 +1,5 @@
 // Stage displace, third pass: targets take what they let in, and the sums are 0 again.
-// In: receivers, underside. In and out: requested, granted, height, tick.highest. A lane takes a cell.
+// In: receivers, underside. In and out: requested, granted, height, tick.highest. Out: tile states. A lane takes a cell.
 // Twin: displace.cpp, giveToTargets.
 #version 450 core
 #include "../rules/exchange.h"
@@ -7,12 +7,14 @@
 #include "tick.glsl"
 
 layout(std430, binding = kBindRowChunks) readonly buffer RowChunks { RowChunk row_chunks[]; };
+layout(std430, binding = kBindTileStates) writeonly buffer TileStates { TileState tile_states[]; };
 layout(std430, binding = kBindRequestedLow) buffer RequestedLow { uint requested_low[]; };
 layout(std430, binding = kBindRequestedHigh) buffer RequestedHigh { uint requested_high[]; };
 layout(std430, binding = kBindGrantedLow) buffer GrantedLow { uint granted_low[]; };
 layout(std430, binding = kBindGrantedHigh) buffer GrantedHigh { uint granted_high[]; };
 layout(std430, binding = kBindHeight) buffer Height { int height[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
+layout(location = 2) uniform int step;  // of the relaxation, that comes next
 
 void main() {
   if (groupIndex() >= tick.lists[sub_step].receivers.used) return;
@@ -31,6 +33,8 @@ void main() {
   int raised = height[at] + int(all_fits ? requested_low[cell] : granted_low[cell]);
   height[at] = raised;
   if (raised > tick.highest) atomicMax(tick.highest, raised);
+  // Sources lie under a body, where a slab is unsettled anyway; targets need not.
+  tile_states[at / kTileCells].changed_at[at % kTileCells / kSlabCells] = step;
   requested_low[cell] = 0u;
   requested_high[cell] = 0u;
   granted_low[cell] = 0u;

@@ -17,7 +17,7 @@ struct Primitive {
   RasterPoint b;
   RasterPoint c;
   int first;
-  int last;
+  int end;
   int origin_x;
   int origin_y;
   int z;
@@ -50,11 +50,19 @@ Primitive primitiveAt(int body, int i) {
     p.along_y = rasterEdge(p.a, p.b).along_y != 0;
   else
     p.c = pointAt(first_point, indices[at + 2]);
-  int low = p.along_y ? min(p.a.y, min(p.b.y, p.c.y)) : min(p.a.x, min(p.b.x, p.c.x));
-  int high = p.along_y ? max(p.a.y, max(p.b.y, p.c.y)) : max(p.a.x, max(p.b.x, p.c.x));
-  int origin = p.along_y ? p.origin_y : p.origin_x;
-  p.first = max(floorDiv(low, kSubcells) + origin, p.along_y ? p.box.y : p.box.x);
-  p.last = min(floorDiv(high, kSubcells) + origin, (p.along_y ? p.box.w : p.box.z) - 1);
+  ivec2 low = ivec2(min(p.a.x, min(p.b.x, p.c.x)), min(p.a.y, min(p.b.y, p.c.y)));
+  ivec2 high = ivec2(max(p.a.x, max(p.b.x, p.c.x)), max(p.a.y, max(p.b.y, p.c.y)));
+  RasterSpan rows;
+  if (p.is_edge) {
+    rows.begin = floorDiv(p.along_y ? low.y : low.x, kSubcells);
+    rows.end = floorDiv(p.along_y ? high.y : high.x, kSubcells) + 1;
+  } else {
+    rows = centresBetween(low.y, high.y);
+    RasterSpan columns = centresBetween(low.x, high.x);
+    if (columns.end <= columns.begin) rows.end = rows.begin;
+  }
+  p.first = max(rows.begin + (p.along_y ? p.origin_y : p.origin_x), p.along_y ? p.box.y : p.box.x);
+  p.end = min(rows.end + (p.along_y ? p.origin_y : p.origin_x), p.along_y ? p.box.w : p.box.z);
   return p;
 }
 

@@ -71,12 +71,10 @@ class RowTarget {
     return context_.area.underside.data() + row_offset_[y - box_.y0] + std::size_t(x - box_.x0);
   }
 
-  /// The cells that points can cover, within these rows.
-  CellBox cellsOf(const PlacedBody& body, int low_x, int low_y, int high_x, int high_y) const {
-    return {std::max(rules::floorDiv(low_x, rules::kSubcells) + body.origin_x, box_.x0),
-            std::max(rules::floorDiv(low_y, rules::kSubcells) + body.origin_y, box_.y0),
-            std::min(rules::floorDiv(high_x, rules::kSubcells) + body.origin_x + 1, box_.x1),
-            std::min(rules::floorDiv(high_y, rules::kSubcells) + body.origin_y + 1, box_.y1)};
+  /// The part of a box of cells, relative to the body's, that lies in these rows.
+  CellBox clipped(const PlacedBody& body, const rules::RasterSpan& columns, const rules::RasterSpan& rows) const {
+    return {std::max(columns.begin + body.origin_x, box_.x0), std::max(rows.begin + body.origin_y, box_.y0),
+            std::min(columns.end + body.origin_x, box_.x1), std::min(rows.end + body.origin_y, box_.y1)};
   }
 
   /// True where something at this height or above can change nothing. Looks only at boxes small enough to be worth it.
@@ -93,8 +91,9 @@ class RowTarget {
 
   void drawTriangle(const rules::RasterPoint& a, const rules::RasterPoint& b, const rules::RasterPoint& c,
                     const PlacedBody& body) {
-    const CellBox cells = cellsOf(body, std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}),
-                                  std::max({a.y, b.y, c.y}));
+    const rules::RasterSpan columns = rules::centresBetween(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}));
+    const rules::RasterSpan rows = rules::centresBetween(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}));
+    const CellBox cells = clipped(body, columns, rows);
     const std::int32_t lowest = rules::heightInWorld(body.z_q, std::min({a.z, b.z, c.z}));
     if (cells.empty() || hidden(cells, lowest)) return;
     const rules::RasterTriangle t = rules::rasterTriangle(a, b, c);
@@ -112,7 +111,11 @@ class RowTarget {
   }
 
   void drawEdge(const rules::RasterPoint& a, const rules::RasterPoint& b, const PlacedBody& body) {
-    const CellBox cells = cellsOf(body, std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y));
+    const auto cellsBetween = [](int p, int q) {
+      return rules::RasterSpan{rules::floorDiv(std::min(p, q), rules::kSubcells),
+                               rules::floorDiv(std::max(p, q), rules::kSubcells) + 1};
+    };
+    const CellBox cells = clipped(body, cellsBetween(a.x, b.x), cellsBetween(a.y, b.y));
     if (cells.empty() || hidden(cells, rules::heightInWorld(body.z_q, std::min(a.z, b.z)))) return;
     const rules::RasterEdge e = rules::rasterEdge(a, b);
     const bool along_y = e.along_y != 0;
