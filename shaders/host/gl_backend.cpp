@@ -166,7 +166,8 @@ class GlBackend final : public Backend {
     }
     auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick);
     if (!slots) return Error{slots.error()};
-    tick.tables = makeTickTables(*tick.pack, meshes_, tick.plan, *slots, shape_);
+    tick.tables =
+        makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_), shape_);
     return device_->stages.begin(tick.tables);
   }
 
@@ -213,6 +214,7 @@ class GlBackend final : public Backend {
     if (Status status = device_->finished.wait("results"); !status) return status;
     std::memcpy(&head_, device_->results.data(), kHeadBytes);
     device_->clock.addTo(tick.effect.stage_ms);
+    highest_ = std::max(highest_, head_.highest);
     return readback().reserve(stagedBytes());
   }
 
@@ -269,10 +271,10 @@ class GlBackend final : public Backend {
     effect.active_cells = tile_count * rules::kTileCells;
     effect.penetrating_cells = head_.penetrating_cells;
     effect.pairs_visited = head_.slabs_visited * kSlabPairs;
-    effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes) +
+    effect.relax_bytes = effect.pairs_visited * (schedule_ == RelaxSchedule::fused ? kFusedPairBytes : kPairBytes);
+    effect.bytes_moved = effect.relax_bytes + effect.active_cells * (kGatherBytes + kHashBytes) +
                          effect.domain_cells * (kCoverBytes + kPenetrationBytes) +
-                         effect.penetrating_cells * (kNearestBytes + kDisplaceBytes) +
-                         effect.pairs_visited * (schedule_ == RelaxSchedule::fused ? kFusedPairBytes : kPairBytes);
+                         effect.penetrating_cells * (kNearestBytes + kDisplaceBytes);
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 
@@ -287,7 +289,8 @@ class GlBackend final : public Backend {
   std::unique_ptr<Device> device_;
   const ScenePack* loaded_ = nullptr;  // whose meshes are on the device
   MeshTable meshes_;
-  rules::TickHead head_{};  // of the last tick, as the stages left it
+  std::int32_t highest_ = -rules::kHeightLimit;  // of all cells in all ticks
+  rules::TickHead head_{};                       // of the last tick, as the stages left it
   std::optional<Submitted> submitted_;
   std::deque<Uncollected> uncollected_;
   int next_readback_ = 0;

@@ -19,6 +19,14 @@ GlProgram program(const std::string& name, int group, std::vector<std::pair<std:
   return makeProgram({"sim/" + name + ".comp"}, defines);
 }
 
+GlProgram exchangeProgram(int matching, int beneath, int group) {
+  const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
+  return program(matching < rules::kMatchVertical ? "exchange_along" : "exchange_across", group,
+                 {{"SPOOR_PARITY", std::to_string(matching & 1)},
+                  {"SPOOR_SHIFT", std::to_string(shift)},
+                  {"SPOOR_BENEATH", std::to_string(beneath)}});
+}
+
 void setUniform(int location, int value) { glUniform1i(location, value); }
 
 /// Where the arguments of a list that the GPU makes lie; `list` is its offset in SubStepLists.
@@ -44,12 +52,8 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       displace_request_(program("displace_request", shape.group)),
       displace_take_(program("displace_take", shape.group)),
       displace_give_(program("displace_give", shape.group)),
-      exchange_along_(program("exchange_along", shape.group)),
       sweep_(program("sweep", kSweepLanes * shape.group)),
       hash_(program("hash", shape.group)),
-      exchange_across_{program("exchange_across", shape.group, {{"SPOOR_SHIFT", "0"}}),
-                       program("exchange_across", shape.group, {{"SPOOR_SHIFT", "1"}}),
-                       program("exchange_across", shape.group, {{"SPOOR_SHIFT", "-1"}})},
       upload_("a tick's tables", limits.storage_block_bytes),
       vertices_("the meshes' vertices", limits.storage_block_bytes),
       indices_("the meshes' triangles and edges", limits.storage_block_bytes),
@@ -71,7 +75,11 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       granted_low_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
       granted_high_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
       results_("the tiles' results", limits.storage_block_bytes),
-      staging_("the changed cells", limits.storage_block_bytes) {}
+      staging_("the changed cells", limits.storage_block_bytes) {
+  for (int matching = 0; matching < rules::kMatchingCount; ++matching)
+    for (int beneath = 0; beneath < 2; ++beneath)
+      exchange_[std::size_t(matching)][std::size_t(beneath)] = exchangeProgram(matching, beneath, shape.group);
+}
 
 Status GlStages::load(const ScenePack& pack, const MeshTable& meshes) {
   slope_threshold_ = pack.slope_threshold_q;
@@ -263,14 +271,12 @@ void GlStages::relax(const TickTables& tick, int i) {
 void GlStages::sweepPlain(const TickTables& tick, int first_step) {
   bindCells(tick);
   for (int matching = 0; matching < rules::kMatchingCount; ++matching) {
-    const bool along = matching < rules::kMatchVertical;
-    use(along ? exchange_along_ : exchange_across_[std::size_t(matching / 2 - 1)]);
+    use(exchange_[std::size_t(matching)][tick.beneath ? 1 : 0]);
     setUniform(2, first_step + matching);
-    setUniform(3, matching & 1);
-    setUniform(4, skip_settled_ ? 1 : 0);
-    setUniform(5, int(tick.tile_index.size()));
-    setUniform(6, matching < rules::kMatchDiagonal ? slope_threshold_ : diagonal_threshold_);
-    setUniform(7, obstacle_threshold_);
+    setUniform(3, skip_settled_ ? 1 : 0);
+    setUniform(4, int(tick.tile_index.size()));
+    setUniform(5, matching < rules::kMatchDiagonal ? slope_threshold_ : diagonal_threshold_);
+    setUniform(6, obstacle_threshold_);
     dispatch(tick.exchange);
   }
 }
@@ -280,7 +286,7 @@ void GlStages::sweepFused(const TickTables& tick, int first_step) {
   height_[1 - current_].bind(rules::kBindNextHeight);
   use(sweep_);
   setUniform(2, first_step);
-  setUniform(4, skip_settled_ ? 1 : 0);
+  setUniform(3, skip_settled_ ? 1 : 0);
   dispatch(tick.sweep);
   current_ = 1 - current_;
 }

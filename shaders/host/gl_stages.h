@@ -9,6 +9,7 @@
 #include "shaders/host/gl_limits.h"
 #include "shaders/host/tick_tables.h"
 #include "shaders/host/tile_pool.h"
+#include "shaders/rules/exchange.h"
 #include "shared/sim/stage.h"
 
 namespace spoor {
@@ -73,8 +74,9 @@ class GlStages {
   int current_ = 0;  // which of height_ holds the heights
   int slope_threshold_ = 0, diagonal_threshold_ = 0, obstacle_threshold_ = 0;
   GlProgram gather_, cover_, ceiling_, place_, depth_, depth_large_, penetration_, nearest_columns_, nearest_search_,
-      displace_request_, displace_take_, displace_give_, exchange_along_, sweep_, hash_;
-  std::array<GlProgram, 3> exchange_across_;  // shift 0, 1, -1
+      displace_request_, displace_take_, displace_give_, sweep_, hash_;
+  // Of each matching; the second where bodies may stand over active tiles.
+  std::array<std::array<GlProgram, 2>, rules::kMatchingCount> exchange_;
   GrowingBuffer upload_, vertices_, indices_, points_, large_;
   GrowingBuffer height_[2];  // the second only where sweeps are fused
   GrowingBuffer bedrock_, underside_, tile_states_;

@@ -264,8 +264,11 @@ MeshTable makeMeshTable(const ScenePack& pack) {
 }
 
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
-                          std::span<const int> slots, const GroupShape& shape) {
-  return TableMaker(pack, meshes, plan, shape).make(slots);
+                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape) {
+  TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots);
+  tables.beneath = highest + pack.obstacle_threshold_q >= rules::kNoUnderside;
+  for (const SubStepTables& step : tables.sub_steps) tables.beneath |= step.cover.count > 0;
+  return tables;
 }
 
 }  // namespace spoor

@@ -57,11 +57,13 @@ struct TickTables {
   TableRange tiles;  // TileEntry [active tiles]
   GroupList gather, exchange, sweep, hash;
   std::vector<SubStepTables> sub_steps;
+  bool beneath = false;         // may an underside, or the height limit, stop soil from coming somewhere?
   std::vector<int> tile_index;  // [plan.active] where the shaders have that tile
 };
 
-/// @param slots  [plan.active] of the tiles in the pool
+/// @param slots    [plan.active] of the tiles in the pool
+/// @param highest  no cell of the active tiles is higher before the tick
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
-                          std::span<const int> slots, const GroupShape& shape);
+                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape);
 
 }  // namespace spoor

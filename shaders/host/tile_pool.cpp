@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "shared/base/assert.h"
+#include "shared/base/kernels.h"
 #include "shared/codec/tile_codec.h"
 
 namespace spoor {
@@ -123,7 +124,10 @@ void TilePool::copyToDevice(std::span<Tile* const> tiles, std::span<const int> s
       glNamedBufferSubData(to.name(), first_slot * kPlaneBytes, bytes, cells.data());
       copied_bytes_ += bytes;
     };
-    copy(height_, [](const Tile& tile) { return tile.height(); });
+    copy(height_, [&](const Tile& tile) {
+      highest_ = std::max(highest_, kernels().highest(tile.height().data(), rules::kTileCells));
+      return tile.height();
+    });
     copy(bedrock_, [](const Tile& tile) { return *tile.bedrock; });
     begin = end;
   }

@@ -36,6 +36,8 @@ class TilePool {
   std::int64_t deviceBytes() const { return height_.bytes() + bedrock_.bytes(); }
   std::int64_t hostBytes() const;
   std::int64_t copiedBytes() const { return copied_bytes_; }  // to the device, since the pool was made
+  /// No cell that came to the device was higher.
+  std::int32_t highest() const { return highest_; }
   std::int64_t evictedCount() const { return evicted_count_; }
 
  private:
@@ -56,6 +58,7 @@ class TilePool {
   std::vector<Slot> slots_;
   std::vector<int> free_;  // the lowest at the back
   std::unordered_map<const Tile*, int> slot_of_;
+  std::int32_t highest_ = -rules::kHeightLimit;
   std::int64_t copied_bytes_ = 0, evicted_count_ = 0;
 };
 

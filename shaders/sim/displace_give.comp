@@ -1,6 +1,6 @@
 // Stage displace, third pass: targets take what they let in, and the sums are 0 again.
-// In: receivers, underside. In and out: requested, granted, height, tick.highest. Out: tile states. A lane takes a cell.
-// Twin: displace.cpp, giveToTargets.
+// In: receivers, underside. In and out: requested, granted, height, tick.highest. Out: tile states.
+// A lane takes a cell. Twin: displace.cpp, giveToTargets.
 #version 450 core
 #include "../rules/exchange.h"
 #include "domains.glsl"

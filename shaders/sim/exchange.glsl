@@ -1,6 +1,7 @@
 // Stage relax: what both of its plain passes share. A lane takes the pairs that begin in four columns of a tile.
 // Software renderers run both sides of every branch and leave loops only: lanes go from one unsettled slab to the next,
-// rather than past the settled ones.
+// rather than past the settled ones. SPOOR_PARITY is that of the pairs' first cells; SPOOR_BENEATH is 1 where bodies
+// may stand over active tiles.
 #ifndef SPOOR_SIM_EXCHANGE_GLSL
 #define SPOOR_SIM_EXCHANGE_GLSL
 #include "../rules/exchange.h"
@@ -12,11 +13,10 @@ layout(std430, binding = kBindHeight) buffer Height { ivec4 height[]; };
 layout(std430, binding = kBindBedrock) readonly buffer Bedrock { ivec4 bedrock[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { ivec4 underside[]; };
 layout(location = 2) uniform int step;
-layout(location = 3) uniform int parity;        // of the pairs' first cells
-layout(location = 4) uniform int skip_settled;  // 0: visit every pair
-layout(location = 5) uniform int tile_count;
-layout(location = 6) uniform int threshold;
-layout(location = 7) uniform int obstacle_threshold;
+layout(location = 3) uniform int skip_settled;  // 0: visit every pair
+layout(location = 4) uniform int tile_count;
+layout(location = 5) uniform int threshold;
+layout(location = 6) uniform int obstacle_threshold;
 
 const int kRowQuads = kTileSize / 4;
 const int kTileQuads = kTileCells / 4;
@@ -39,7 +39,7 @@ bool settled(Slab slab) {
 void markChanged(Slab slab) { tile_states[slab.tile].changed_at[slab.slab] = step; }
 
 /// The lowest underside from which soil can be stopped, now that no cell rises above the highest of all.
-bool limits(int ceiling) { return ceiling <= tick.highest + obstacle_threshold; }
+bool limits(int ceiling) { return SPOOR_BENEATH != 0 && ceiling <= tick.highest + obstacle_threshold; }
 
 ivec4 undersides(Slab slab, int at) { return slab.ceiling < kNoUnderside ? underside[at] : ivec4(kNoUnderside); }
 

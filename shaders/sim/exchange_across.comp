@@ -82,7 +82,7 @@ void main() {
       beside = slabAt(beside_tile, slab.slab);
       above = slab;
       above_beside = beside;
-      if (parity != 0) {
+      if (SPOOR_PARITY != 0) {
         bool top = slab.slab == kSlabs - 1;
         above = slabAt(top ? tiles[tile].neighbour[7] : tile, top ? 0 : slab.slab + 1);
         above_beside = above;
@@ -94,7 +94,7 @@ void main() {
 
     bool beneath = limits(min(min(slab.ceiling, beside.ceiling), min(above.ceiling, above_beside.ceiling)));
     bool moved = false;
-    for (int row = index * kSlabRows + parity; row < (index + 1) * kSlabRows + parity; row += 2) {
+    for (int row = index * kSlabRows + SPOOR_PARITY; row < (index + 1) * kSlabRows + SPOOR_PARITY; row += 2) {
       bool crosses = row % kSlabRows == kSlabRows - 1;
       Slab upper = slab;
       Slab upper_beside = beside;

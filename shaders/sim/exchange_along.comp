@@ -42,7 +42,7 @@ void main() {
   if (tile >= tile_count) return;
   int column = id % kRowQuads;
   bool last = column == kRowQuads - 1;
-  int right_tile = parity == 0 ? -1 : tiles[tile].neighbour[5];
+  int right_tile = SPOOR_PARITY == 0 ? -1 : tiles[tile].neighbour[5];
   int to_next = last ? (right_tile - tile) * kTileQuads - column : 1;
   int index = -1;
   for (;;) {
@@ -61,12 +61,12 @@ void main() {
     bool moved = false;
     for (int row = 0; row < kSlabRows; ++row) {
       bool row_moved =
-          parity == 0 ? exchangeEven(at, slab, beneath) : exchangeOdd(at, at + to_next, slab, next, beneath);
+          SPOOR_PARITY == 0 ? exchangeEven(at, slab, beneath) : exchangeOdd(at, at + to_next, slab, next, beneath);
       moved = moved || row_moved;
       at += kRowQuads;
     }
     if (!moved) continue;
     markChanged(slab);
-    if (parity != 0 && next.tile >= 0) markChanged(next);
+    if (SPOOR_PARITY != 0 && next.tile >= 0) markChanged(next);
   }
 }

@@ -12,7 +12,7 @@ layout(std430, binding = kBindBedrock) readonly buffer Bedrock { int bedrock[]; 
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
 layout(std430, binding = kBindNextHeight) writeonly buffer NextHeight { int next_height[]; };
 layout(location = 2) uniform int step;          // the sweep's first
-layout(location = 4) uniform int skip_settled;  // 0: visit every pair
+layout(location = 3) uniform int skip_settled;  // 0: visit every pair
 
 const int kBlock = 32;
 const int kHalo = 6;

@@ -20,6 +20,7 @@ struct TickEffect {
   std::int64_t penetrating_cells = 0;  // of all sub-steps
   std::int64_t pairs_visited = 0;      // by the relaxation; a whole sweep visits about four per active cell
   std::int64_t bytes_moved = 0;        // read and written by the stages, from the counts above; no cache is assumed
+  std::int64_t relax_bytes = 0;        // of these, by the relaxation
   std::int64_t dispatches = 0;         // of compute shaders
   std::int64_t bytes_to_device = 0;    // over the bus, where the backend has one
   std::int64_t bytes_from_device = 0;

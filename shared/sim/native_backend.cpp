@@ -117,6 +117,7 @@ class NativeBackend final : public Backend {
     StageTimer timer(effect.stage_ms, Stage::relax);
     const std::int64_t pairs = runRelax(context, sweep, sub_step.sweep_count, skip_settled_);
     effect.pairs_visited += pairs;
+    effect.relax_bytes += pairs * kPairBytes;
     effect.bytes_moved += pairs * kPairBytes;
   }
 

@@ -1,6 +1,10 @@
 #include "tests/bench/bench_scenes.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "shared/base/assert.h"
+#include "shared/base/fixed.h"
 
 namespace spoor {
 namespace {
@@ -85,18 +89,113 @@ ScenePack carScene(const std::string& name, std::int32_t cells) {
   return pack;
 }
 
+// Rooms of makeAreasScene: 2 tiles wide and together 64 tiles long, whatever their number, and far apart.
+constexpr std::int32_t kRoomWidth = 2 * rules::kTileSize;
+constexpr std::int32_t kRoomsLength = 64 * rules::kTileSize;
+constexpr std::int32_t kRoomDistance = 4 * rules::kTileSize;  // to the next one, and to the world's edge
+
+/// Eight plates of 28 768 cells each, in a row in each room without a gap. A room leaves at least 24 cells on every
+/// side for the soil that they displace, and at most a tile, so that their search domain meets every tile of it; the
+/// border that the soil goes to is the same within 6 %.
+struct PlateSize {
+  int area_count;
+  std::int32_t length, width;
+};
+constexpr int kPlateCount = 8;
+constexpr PlateSize kPlateSizes[] = {{1, 496, 58}, {2, 496, 58}, {4, 464, 62}, {8, 464, 62}};
+
+ScenePack areasScene(const std::string& name, const PlateSize& plate) {
+  ScenePack pack = emptyScene(name, 8192);
+  pack.noise.highest_q = pack.noise.lowest_q;
+  Mesh mesh;
+  // Over the outermost cells' centres by a little.
+  const std::int32_t reach_x = (plate.length - 1) * kCell_q / 2 + 100;
+  const std::int32_t reach_y = (plate.width - 1) * kCell_q / 2 + 100;
+  addBox(mesh, {-reach_x, -reach_y, 0}, {reach_x, reach_y, 4000});
+  addMesh(pack, std::move(mesh));
+  const int in_row = kPlateCount / plate.area_count;
+  const std::int32_t margin_x = (kRoomsLength / plate.area_count - in_row * plate.length) / 2;
+  const std::int32_t margin_y = (kRoomWidth - plate.width) / 2;
+  for (int i = 0; i < kPlateCount; ++i) {
+    const std::int32_t first_x = kRoomDistance + margin_x + i % in_row * plate.length;
+    const std::int32_t first_y = kRoomDistance + margin_y + i / in_row * (kRoomWidth + kRoomDistance);
+    pack.paths.push_back(
+        {{{(2 * first_x + plate.length - 1) * kCell_q / 2, (2 * first_y + plate.width - 1) * kCell_q / 2}}, 0, 0, 0});
+    pack.bodies.push_back(bodyOf(0, {0, 0, 0}, 0));
+    pack.bodies.back().path_index = i;
+  }
+  return pack;
+}
+
+/// Heaps a cone of soil on a state's ground and wakes the tiles that it covers.
+void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state) {
+  const std::int32_t radius = scene.cone_radius_cells, middle = scene.pack.width_cells / 2;
+  const std::int32_t first = (middle - radius) / rules::kTileSize, last = (middle + radius) / rules::kTileSize;
+  for (std::int32_t tile_y = first; tile_y <= last; ++tile_y)
+    for (std::int32_t tile_x = first; tile_x <= last; ++tile_x) {
+      auto tile = makeTile({tile_x, tile_y}, base, 0);
+      for (int i = 0; i < rules::kTileCells; ++i) {
+        const std::int64_t x = tile_x * rules::kTileSize + i % rules::kTileSize - middle;
+        const std::int64_t y = tile_y * rules::kTileSize + i / rules::kTileSize - middle;
+        const std::int64_t slope_length = radius - std::int64_t(isqrt(std::uint64_t(x * x + y * y)));
+        const std::int64_t added_q = 2 * scene.pack.slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
+        tile->height()[std::size_t(i)] += std::int32_t(added_q);
+        tile->ground += added_q;
+      }
+      tile->hash = tileHash(*tile);
+      state.ledger.initial += tile->initial;
+      state.ledger.ground += tile->ground;
+      state.ledger.events += tile->ground - tile->initial;
+      Tile& live = state.tiles.insert(std::move(tile));
+      state.tiles.setWake(live, kWakeMaskLimit - 1);
+      state.tiles_hash += tileStateHash(live);
+    }
+}
+
 }  // namespace
 
-std::vector<std::string> benchSceneNames() { return {"car491", "slab491", "pile", "car", "car_wide"}; }
+std::vector<std::string> benchSceneNames() {
+  return {"car491", "slab491", "pile", "car", "car_wide", "areas1", "areas2", "areas4", "areas8"};
+}
 
-ScenePack makeBenchScene(const std::string& name) {
-  ScenePack pack = name == "car491"     ? domainScene(name, false)
-                   : name == "slab491"  ? domainScene(name, true)
-                   : name == "car"      ? carScene(name, 2048)
-                   : name == "car_wide" ? carScene(name, 65536)
-                                        : emptyScene(name, 512);
-  SPOOR_ASSERT(validatePack(pack));
-  return pack;
+BenchScene makeBenchScene(const std::string& name) {
+  if (name.starts_with("areas")) return makeAreasScene(name.back() - '0');
+  BenchScene scene;
+  scene.pack = name == "car491"     ? domainScene(name, false)
+               : name == "slab491"  ? domainScene(name, true)
+               : name == "car"      ? carScene(name, 2048)
+               : name == "car_wide" ? carScene(name, 65536)
+                                    : emptyScene(name, 1024);
+  if (name == "pile") {
+    scene.pack.noise.highest_q = scene.pack.noise.lowest_q;
+    scene.cone_radius_cells = 256;
+  }
+  SPOOR_ASSERT(validatePack(scene.pack));
+  scene.id = packId(encodePack(scene.pack));
+  return scene;
+}
+
+BenchScene makeAreasScene(int area_count) {
+  const auto plate = std::ranges::find(kPlateSizes, area_count, &PlateSize::area_count);
+  SPOOR_ASSERT(plate != std::end(kPlateSizes));
+  BenchScene scene;
+  scene.pack = areasScene("areas" + std::to_string(area_count), *plate);
+  scene.sinking_q_per_tick = 3;
+  SPOOR_ASSERT(validatePack(scene.pack));
+  scene.id = packId(encodePack(scene.pack));
+  return scene;
+}
+
+WorldState startOf(const BenchScene& scene, const BaseTerrain& base) {
+  WorldState state = initialState(scene.id, base);
+  if (scene.cone_radius_cells > 0) addCone(scene, base, state);
+  return state;
+}
+
+std::vector<Pose> posesOf(const BenchScene& scene, const Script& script, std::int32_t tick) {
+  std::vector<Pose> poses = script.poses(tick);
+  for (Pose& pose : poses) pose.z_q -= scene.sinking_q_per_tick * tick;
+  return poses;
 }
 
 }  // namespace spoor

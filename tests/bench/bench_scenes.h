@@ -1,11 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "shared/world/pack.h"
+#include "shared/world/script.h"
+#include "shared/world/state.h"
 
 namespace spoor {
+
+/// A pack, and what happens in it besides its script.
+struct BenchScene {
+  ScenePack pack;
+  PackId id;
+  std::int32_t cone_radius_cells = 0;   // > 0: a cone of soil twice as steep as it rests, in the world's middle
+  std::int32_t sinking_q_per_tick = 0;  // how far the bodies go down in a tick, 0.1 mm
+};
 
 /// Names for makeBenchScene.
 std::vector<std::string> benchSceneNames();
@@ -13,8 +23,23 @@ std::vector<std::string> benchSceneNames();
 /// Scenes made in code, for measuring without files:
 ///   car491   one body whose search domain is 491 x 491 cells: a plate on four wheels' footprints
 ///   slab491  the same domain with the whole underside in the soil: the worst case for `nearest`
-///   pile     no body; the caller relaxes a column
+///   pile     no body; a cone of soil on level ground, 512 cells across, comes to rest
 ///   car      a car of five bodies in 2048 x 2048 cells; car_wide: the same car in 65 536 x 65 536
-ScenePack makeBenchScene(const std::string& name);
+///   areas1, areas2, areas4, areas8   plates that go down on level ground: makeAreasScene
+BenchScene makeBenchScene(const std::string& name);
+
+/// Eight plates in one to eight rows far apart, each row an area, that go down a little in every tick, so that all
+/// cells under them penetrate in every tick. Whatever the areas' number they have the same cells together, nearly the
+/// same width and border, and lie on the same number of tiles, which their soil does not leave within kAreasTickLimit
+/// ticks.
+/// @param area_count  1, 2, 4 or 8
+BenchScene makeAreasScene(int area_count);
+inline constexpr std::int64_t kAreasTickLimit = 60;
+
+/// The scene's state before its first tick. The base is the scene's pack's.
+WorldState startOf(const BenchScene& scene, const BaseTerrain& base);
+
+/// Poses of the scene's bodies after `tick` ticks. The script is the scene's pack's.
+std::vector<Pose> posesOf(const BenchScene& scene, const Script& script, std::int32_t tick);
 
 }  // namespace spoor
