@@ -28,6 +28,8 @@ constexpr std::int64_t kPairBytes = 24;           // two heights in and out, two
 constexpr std::int64_t kFusedPairBytes = 24 / 4;  // a fused sweep reads and writes a cell once, for its four pairs
 constexpr std::int64_t kHashBytes = 8;            // per active cell: compare with the pool
 
+const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
+
 /// A tick between submit() and settle().
 struct Submitted {
   TickPlan plan;
@@ -99,7 +101,10 @@ class GlBackend final : public Backend {
     }
     const CurrentContext current(*context_);
     if (!current.ok()) return Error{kNotCurrent.error()};
-    if (Status status = fetchResults(tick); !status) return Error{status.error()};
+    if (Status status = fetchResults(tick); !status) {
+      device_->tiles.forget();  // the pool may be a tick ahead of the state, and fresh tiles are gone
+      return Error{status.error()};
+    }
     commit(tick, state);
     return std::move(tick.effect);
   }
@@ -168,6 +173,7 @@ class GlBackend final : public Backend {
     if (!slots) return Error{slots.error()};
     tick.tables =
         makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_), shape_);
+    if (Status status = device_->results.reserve(kHeadBytes + resultBytes(tick)); !status) return status;
     return device_->stages.begin(tick.tables);
   }
 
@@ -199,26 +205,33 @@ class GlBackend final : public Backend {
     tick.effect.dispatches = stages.dispatchCount() - dispatched_before;
     tick.effect.bytes_to_device = device_->tiles.copiedBytes() - copied_before + std::int64_t(tables.bytes.size());
 
-    const std::int64_t result_bytes = std::int64_t(tick.active.tiles.size() * sizeof(rules::TileResult));
-    if (Status status = device_->results.reserve(kHeadBytes + result_bytes); !status) return status;
-    glMemoryBarrier(
-        GL_BUFFER_UPDATE_BARRIER_BIT);  // the tables' head and results; staging, which is copied later; pool
+    if (Status status = glStatus("the stages"); !status) return status;
+    // What the stages wrote is copied now (head, results) or later (staging), or written over in the next tick.
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glCopyNamedBufferSubData(stages.tables(), device_->results.name(), tables.head.offset, 0, kHeadBytes);
-    glCopyNamedBufferSubData(stages.results().name(), device_->results.name(), 0, kHeadBytes, result_bytes);
+    glCopyNamedBufferSubData(stages.results().name(), device_->results.name(), 0, kHeadBytes, resultBytes(tick));
     device_->finished.place();
-    return glStatus("the stages");
+    return glStatus("copying results");
   }
 
-  /// Waits for a tick's head and its tiles' results.
+  static std::int64_t resultBytes(const Submitted& tick) {
+    return std::int64_t(tick.active.tiles.size() * sizeof(rules::TileResult));
+  }
+
+  /// Waits for a tick's head and its tiles' results, and sends the changed cells on their way.
   Status fetchResults(Submitted& tick) {
     if (Status status = device_->finished.wait("results"); !status) return status;
     std::memcpy(&head_, device_->results.data(), kHeadBytes);
     device_->clock.addTo(tick.effect.stage_ms);
     highest_ = std::max(highest_, head_.highest);
-    return readback().reserve(stagedBytes());
+    if (head_.staged_cells == 0) return {};
+    if (Status status = readback().reserve(stagedBytes()); !status) return status;
+    glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, stagedBytes());
+    device_->copied[next_readback_].place();
+    return glStatus("copying changed cells");
   }
 
-  /// Takes the state to the new tick and sends the changed cells on their way.
+  /// Takes the state to the new tick.
   void commit(Submitted& tick, WorldState& state) {
     const std::size_t count = tick.active.tiles.size();
     const std::vector<Tile*> tiles = tick.active.tiles;
@@ -242,10 +255,6 @@ class GlBackend final : public Backend {
     }
     left.cells = head_.staged_cells;
     left.readback = next_readback_;
-    if (left.cells > 0) {
-      glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, stagedBytes());
-      device_->copied[next_readback_].place();
-    }
     next_readback_ = 1 - next_readback_;
     fillIn(std::int64_t(count), tick.effect);
   }
@@ -278,7 +287,6 @@ class GlBackend final : public Backend {
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 
-  inline static const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
   static constexpr std::int64_t kHeadBytes = offsetof(rules::TickHead, lists);
 
   std::unique_ptr<HeadlessContext> context_;

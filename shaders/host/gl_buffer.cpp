@@ -8,6 +8,7 @@ namespace spoor {
 namespace {
 
 constexpr std::int64_t kLeastBytes = 4096;
+constexpr int kLongestWait_s = 120;  // for one tick; a device that takes longer hangs
 
 }  // namespace
 
@@ -54,12 +55,13 @@ void GlFence::place() {
 
 Status GlFence::wait(const std::string& what) {
   constexpr GLuint64 kSecond_ns = 1000000000;
-  for (;;) {
+  for (int waited_s = 0; waited_s < kLongestWait_s; ++waited_s) {
     const GLenum passed = glClientWaitSync(sync_, 0, kSecond_ns);
     if (Status status = contextStatus(); !status) return Error{"gl: " + what + ": " + status.error()};
     if (passed == GL_ALREADY_SIGNALED || passed == GL_CONDITION_SATISFIED) return {};
     if (passed != GL_TIMEOUT_EXPIRED) return Error{"gl: " + what + ": the wait for the device failed"};
   }
+  return Error{"gl: " + what + ": the device did not finish within " + std::to_string(kLongestWait_s) + " s"};
 }
 
 }  // namespace spoor

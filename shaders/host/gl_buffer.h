@@ -69,7 +69,7 @@ class GlFence {
 
   /// After everything asked of the device so far.
   void place();
-  /// Waits until the device is past it. Errors: the context was lost; the wait itself failed.
+  /// Waits until the device is past it. Errors: the context was lost, the wait itself failed, or took minutes.
   [[nodiscard]] Status wait(const std::string& what);
 
  private:

@@ -52,7 +52,6 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       displace_request_(program("displace_request", shape.group)),
       displace_take_(program("displace_take", shape.group)),
       displace_give_(program("displace_give", shape.group)),
-      sweep_(program("sweep", kSweepLanes * shape.group)),
       hash_(program("hash", shape.group)),
       upload_("a tick's tables", limits.storage_block_bytes),
       vertices_("the meshes' vertices", limits.storage_block_bytes),
@@ -76,6 +75,10 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       granted_high_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
       results_("the tiles' results", limits.storage_block_bytes),
       staging_("the changed cells", limits.storage_block_bytes) {
+  if (schedule == RelaxSchedule::fused) {
+    sweep_ = program("sweep", kSweepLanes * shape.group);
+    return;
+  }
   for (int matching = 0; matching < rules::kMatchingCount; ++matching)
     for (int beneath = 0; beneath < 2; ++beneath)
       exchange_[std::size_t(matching)][std::size_t(beneath)] = exchangeProgram(matching, beneath, shape.group);
@@ -97,31 +100,31 @@ Status GlStages::load(const ScenePack& pack, const MeshTable& meshes) {
 Status GlStages::begin(const TickTables& tick) {
   current_ = 0;
   const std::int64_t tiles = std::int64_t(tick.tile_index.size());
-  SubStepTables most;
+  SubStepTables largest;
   for (const SubStepTables& step : tick.sub_steps) {
-    most.point_count = std::max(most.point_count, step.point_count);
-    most.primitive_count = std::max(most.primitive_count, step.primitive_count);
-    most.domain_cells = std::max(most.domain_cells, step.domain_cells);
-    most.mask_words = std::max(most.mask_words, step.mask_words);
-    most.row_chunks = std::max(most.row_chunks, step.row_chunks);
+    largest.point_count = std::max(largest.point_count, step.point_count);
+    largest.primitive_count = std::max(largest.primitive_count, step.primitive_count);
+    largest.domain_cells = std::max(largest.domain_cells, step.domain_cells);
+    largest.mask_words = std::max(largest.mask_words, step.mask_words);
+    largest.row_chunks = std::max(largest.row_chunks, step.row_chunks);
   }
   const std::int64_t plane_bytes = tiles * rules::kTileCells * kCellBytes;
-  const std::int64_t domain_bytes = most.domain_cells * kCellBytes;
+  const std::int64_t domain_bytes = largest.domain_cells * kCellBytes;
   const std::pair<GrowingBuffer*, std::int64_t> needs[] = {
       {&upload_, std::int64_t(tick.bytes.size())},
-      {&points_, most.point_count * std::int64_t(sizeof(rules::RasterPoint))},
-      {&large_, most.primitive_count * 2 * kCellBytes},
+      {&points_, largest.point_count * std::int64_t(sizeof(rules::RasterPoint))},
+      {&large_, largest.primitive_count * 2 * kCellBytes},
       {&height_[0], plane_bytes},
       {&height_[1], schedule_ == RelaxSchedule::fused ? plane_bytes : 0},
       {&bedrock_, plane_bytes},
       {&underside_, plane_bytes},
       {&tile_states_, tiles * std::int64_t(sizeof(rules::TileState))},
       {&overlap_, domain_bytes},
-      {&free_mask_, most.mask_words * kCellBytes},
+      {&free_mask_, largest.mask_words * kCellBytes},
       {&nearest_row_, domain_bytes},
       {&target_, domain_bytes},
-      {&row_chunks_, most.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
-      {&receivers_, most.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
+      {&row_chunks_, largest.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
+      {&receivers_, largest.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
       {&requested_low_, domain_bytes},
       {&requested_high_, domain_bytes},
       {&granted_low_, domain_bytes},

@@ -12,9 +12,9 @@ namespace {
 constexpr int kSize = rules::kTileSize;
 
 // As GLSL's std430 lays them out: ints, one after the other.
-static_assert(sizeof(rules::TileEntry) == 64 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
-static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 112 && sizeof(rules::DomainEntry) == 48);
-static_assert(sizeof(rules::TileResult) == 48 && sizeof(rules::GroupCount) == 16);
+static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
+static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
+static_assert(sizeof(rules::TileResult) == 44 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 48);
 static_assert(sizeof(rules::TickHead) == 32 + rules::kSubStepMost * sizeof(rules::SubStepLists));
 static_assert(rules::kSubStepMost == kSubStepLimit);
 
@@ -68,9 +68,9 @@ class TableMaker {
     for (int i = 0; i < count_; ++i) tables_.tile_index.push_back(shape_.reversed ? count_ - 1 - i : i);
     putTiles(slots);
     const std::int64_t tiles = count_;
-    tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 16 / shape_.group), shape_);
+    tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 4 / rules::kGatherQuads / shape_.group), shape_);
     tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
-    tables_.sweep = writer_.dispatch(tiles * 4, shape_);
+    tables_.sweep = writer_.dispatch(tiles * rules::kBlocksPerSide * rules::kBlocksPerSide, shape_);
     tables_.hash = writer_.dispatch(tiles, shape_);
     int sweep = 0;
     covered_before_.assign(std::size_t(count_), 0);
@@ -227,7 +227,7 @@ class TableMaker {
       const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
       lists = {empty, empty, empty};
     }
-    std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(row_count_) * sizeof(std::int32_t));
+    std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(std::max(row_count_, 1)) * sizeof(std::int32_t));
     std::memcpy(bytes.data(), &head, sizeof(head));
     tables_.head = writer_.put(bytes);
   }

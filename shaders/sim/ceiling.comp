@@ -6,7 +6,7 @@
 layout(std430, binding = kBindTileStates) writeonly buffer TileStates { TileState tile_states[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
 layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; };
-layout(location = 2) uniform int step;  // of the relaxation, that comes next
+layout(location = 2) uniform int relax_step;  // of the relaxation, that comes next
 
 shared int lowest;
 
@@ -22,5 +22,5 @@ void main() {
   barrier();
   if (lane() != 0) return;
   tile_states[block.owner].ceiling[block.x] = lowest;
-  if (lowest < kNoUnderside) tile_states[block.owner].changed_at[block.x] = step;
+  if (lowest < kNoUnderside) tile_states[block.owner].changed_at[block.x] = relax_step;
 }

@@ -8,7 +8,7 @@ layout(std430, binding = kBindTiles) readonly buffer Tiles { TileEntry tiles[]; 
 layout(std430, binding = kBindTileStates) buffer TileStates { TileState tile_states[]; };
 layout(std430, binding = kBindUnderside) writeonly buffer Underside { int underside[]; };
 layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; };
-layout(location = 2) uniform int step;  // of the relaxation, that comes next
+layout(location = 2) uniform int relax_step;  // of the relaxation, that comes next
 
 void main() {
   if (groupIndex() >= group_count) return;
@@ -22,5 +22,5 @@ void main() {
   }
   // Where a body was, room beneath it may have changed.
   if (lane() == 0 && tile_states[block.owner].ceiling[block.x] < kNoUnderside)
-    tile_states[block.owner].changed_at[block.x] = step;
+    tile_states[block.owner].changed_at[block.x] = relax_step;
 }

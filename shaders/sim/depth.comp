@@ -23,6 +23,7 @@ void main() {
     return;
   }
   int entry = atomicAdd(tick.lists[sub_step].large.used, 1);
-  atomicMax(tick.lists[sub_step].large.y, ((entry + 1) * kLargeParts + kDispatchColumns - 1) / kDispatchColumns);
+  int rows = (entry + kDispatchColumns / kLargeParts) / (kDispatchColumns / kLargeParts);
+  atomicMax(tick.lists[sub_step].large.y, min(rows, kDispatchRowsMost));  // beyond that a group takes several
   large[entry] = ivec2(block.owner, primitive);
 }

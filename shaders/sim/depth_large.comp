@@ -10,8 +10,9 @@
 layout(std430, binding = kBindLarge) readonly buffer Large { ivec2 large[]; };
 
 void main() {
-  int entry = groupIndex() / kLargeParts;
-  if (entry >= tick.lists[sub_step].large.used) return;
-  Primitive p = primitiveAt(large[entry].x, large[entry].y);
-  drawRows(p, p.first + groupIndex() % kLargeParts * kGroup + lane(), p.end, kLargeParts * kGroup);
+  int group_total = int(gl_NumWorkGroups.x * gl_NumWorkGroups.y);
+  for (int group = groupIndex(); group / kLargeParts < tick.lists[sub_step].large.used; group += group_total) {
+    Primitive p = primitiveAt(large[group / kLargeParts].x, large[group / kLargeParts].y);
+    drawRows(p, p.first + group % kLargeParts * kGroup + lane(), p.end, kLargeParts * kGroup);
+  }
 }

@@ -14,7 +14,7 @@ layout(std430, binding = kBindGrantedLow) buffer GrantedLow { uint granted_low[]
 layout(std430, binding = kBindGrantedHigh) buffer GrantedHigh { uint granted_high[]; };
 layout(std430, binding = kBindHeight) buffer Height { int height[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
-layout(location = 2) uniform int step;  // of the relaxation, that comes next
+layout(location = 2) uniform int relax_step;  // of the relaxation, that comes next
 
 void main() {
   if (groupIndex() >= tick.lists[sub_step].receivers.used) return;
@@ -34,7 +34,7 @@ void main() {
   height[at] = raised;
   if (raised > tick.highest) atomicMax(tick.highest, raised);
   // Sources lie under a body, where a slab is unsettled anyway; targets need not.
-  tile_states[at / kTileCells].changed_at[at % kTileCells / kSlabCells] = step;
+  tile_states[at / kTileCells].changed_at[at % kTileCells / kSlabCells] = relax_step;
   requested_low[cell] = 0u;
   requested_high[cell] = 0u;
   granted_low[cell] = 0u;

@@ -12,7 +12,7 @@ layout(std430, binding = kBindTileStates) buffer TileStates { TileState tile_sta
 layout(std430, binding = kBindHeight) buffer Height { ivec4 height[]; };
 layout(std430, binding = kBindBedrock) readonly buffer Bedrock { ivec4 bedrock[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { ivec4 underside[]; };
-layout(location = 2) uniform int step;
+layout(location = 2) uniform int relax_step;
 layout(location = 3) uniform int skip_settled;  // 0: visit every pair
 layout(location = 4) uniform int tile_count;
 layout(location = 5) uniform int threshold;
@@ -33,10 +33,10 @@ Slab slabAt(int tile, int slab) { return Slab(tile, slab, tile < 0 ? kNoUndersid
 /// Is there nothing in it that this step could move, as far as the slab itself goes?
 bool settled(Slab slab) {
   return slab.tile < 0 ||
-         skip_settled != 0 && tile_states[slab.tile].changed_at[slab.slab] < step - (kMatchingCount - 1);
+         skip_settled != 0 && tile_states[slab.tile].changed_at[slab.slab] < relax_step - (kMatchingCount - 1);
 }
 
-void markChanged(Slab slab) { tile_states[slab.tile].changed_at[slab.slab] = step; }
+void markChanged(Slab slab) { tile_states[slab.tile].changed_at[slab.slab] = relax_step; }
 
 /// The lowest underside from which soil can be stopped, now that no cell rises above the highest of all.
 bool limits(int ceiling) { return SPOOR_BENEATH != 0 && ceiling <= tick.highest + obstacle_threshold; }

@@ -12,8 +12,7 @@ layout(std430, binding = kBindPoolHeight) readonly buffer PoolHeight { ivec4 poo
 layout(std430, binding = kBindPoolBedrock) readonly buffer PoolBedrock { ivec4 pool_bedrock[]; };
 
 const int kQuads = kTileCells / 4;
-const int kQuadsPerLane = 4;
-const int kGroupsPerTile = kQuads / (kGroup * kQuadsPerLane);
+const int kGroupsPerTile = kQuads / (kGroup * kGatherQuads);
 shared int group_highest;
 
 void main() {
@@ -21,9 +20,9 @@ void main() {
   if (tile >= tick.tile_count) return;
   if (lane() == 0) group_highest = -kHeightLimit;
   barrier();
-  int first = groupIndex() % kGroupsPerTile * kGroup * kQuadsPerLane + lane();
+  int first = groupIndex() % kGroupsPerTile * kGroup * kGatherQuads + lane();
   int lane_highest = -kHeightLimit;
-  for (int i = 0; i < kQuadsPerLane; ++i) {
+  for (int i = 0; i < kGatherQuads; ++i) {
     int quad = first + i * kGroup;
     ivec4 cells = pool_height[tiles[tile].slot * kQuads + quad];
     height[tile * kQuads + quad] = cells;

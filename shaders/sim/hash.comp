@@ -59,7 +59,7 @@ void main() {
   if (lane() == 0) {
     first_staged = cell_count == 0 ? 0 : atomicAdd(tick.staged_cells, cell_count);
     results[tile] = TileResult(box_x0, box_y0, box_x1, box_y1, uint[2](sums[0], sums[1]), uint[2](sums[2], sums[3]),
-                               uint[2](sums[4], sums[5]), first_staged, 0);
+                               uint[2](sums[4], sums[5]), first_staged);
   }
   barrier();
   for (int i = lane(); i < cell_count; i += kGroup) {

@@ -14,7 +14,7 @@ layout(std430, binding = kBindOverlap) writeonly buffer Overlap { int overlap[];
 layout(std430, binding = kBindFreeMask) writeonly buffer FreeMask { uint free_mask[]; };
 layout(std430, binding = kBindRowChunks) writeonly buffer RowChunks { RowChunk row_chunks[]; };
 
-shared int group_count_penetrating;
+shared int penetrating_in_group;
 
 void listRow(int domain, int row) {
   int flag = domains[domain].first_row + row;
@@ -28,7 +28,7 @@ void listRow(int domain, int row) {
 
 void main() {
   if (groupIndex() >= group_count) return;
-  if (lane() == 0) group_count_penetrating = 0;
+  if (lane() == 0) penetrating_in_group = 0;
   barrier();
   Block block = blocks[groupIndex()];
   DomainEntry domain = domains[block.owner];
@@ -52,8 +52,8 @@ void main() {
       }
     }
     free_mask[domain.first_word + block.y / kMaskRows * domain.width + column] = free;
-    if (penetrating != 0) atomicAdd(group_count_penetrating, penetrating);
+    if (penetrating != 0) atomicAdd(penetrating_in_group, penetrating);
   }
   barrier();
-  if (lane() == 0 && group_count_penetrating != 0) atomicAdd(tick.penetrating_cells, group_count_penetrating);
+  if (lane() == 0 && penetrating_in_group != 0) atomicAdd(tick.penetrating_cells, penetrating_in_group);
 }

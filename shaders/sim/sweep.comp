@@ -11,13 +11,13 @@ layout(std430, binding = kBindHeight) readonly buffer Height { int height[]; };
 layout(std430, binding = kBindBedrock) readonly buffer Bedrock { int bedrock[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
 layout(std430, binding = kBindNextHeight) writeonly buffer NextHeight { int next_height[]; };
-layout(location = 2) uniform int step;          // the sweep's first
+layout(location = 2) uniform int relax_step;    // the sweep's first
 layout(location = 3) uniform int skip_settled;  // 0: visit every pair
 
-const int kBlock = 32;
+const int kBlock = kTileSize / kBlocksPerSide;
 const int kHalo = 6;
 const int kSide = kBlock + 2 * kHalo;
-const int kBlocksPerTile = (kTileSize / kBlock) * (kTileSize / kBlock);
+shared bool skip;
 shared int cells[kSide * kSide];
 shared int floors[kSide * kSide];
 shared int ceilings[kSide * kSide];
@@ -32,7 +32,7 @@ bool settled(int tile, ivec2 block) {
       int first = dy < 0 ? kSlabs - 1 : dy > 0 ? 0 : max(block.y * kBlock / kSlabRows - 1, 0);
       int last = dy < 0 ? kSlabs - 1 : dy > 0 ? 0 : min((block.y + 1) * kBlock / kSlabRows, kSlabs - 1);
       for (int slab = first; slab <= last; ++slab)
-        if (tile_states[near].changed_at[slab] >= step - (2 * kMatchingCount - 1)) return false;
+        if (tile_states[near].changed_at[slab] >= relax_step - (2 * kMatchingCount - 1)) return false;
     }
   return true;
 }
@@ -80,10 +80,13 @@ void runMatching(int matching) {
 }
 
 void main() {
-  int tile = groupIndex() / kBlocksPerTile;
+  int tile = groupIndex() / (kBlocksPerSide * kBlocksPerSide);
   if (tile >= tick.tile_count) return;
-  ivec2 block = ivec2(groupIndex() % 2, groupIndex() / 2 % 2);
-  if (skip_settled != 0 && settled(tile, block)) return;
+  ivec2 block = ivec2(groupIndex() % kBlocksPerSide, groupIndex() / kBlocksPerSide % kBlocksPerSide);
+  // One verdict for all lanes: a neighbouring group may change what it is taken from meanwhile.
+  if (lane() == 0) skip = skip_settled != 0 && settled(tile, block);
+  barrier();
+  if (skip) return;
   load(tile, block);
   barrier();
   for (int matching = 0; matching < kMatchingCount; ++matching) {
@@ -98,6 +101,6 @@ void main() {
     int after = cells[(y + kHalo) * kSide + x + kHalo];
     next_height[at] = after;
     if (after != height[at])
-      tile_states[tile].changed_at[(block.y * kBlock + y) / kSlabRows] = step + kMatchingCount - 1;
+      tile_states[tile].changed_at[(block.y * kBlock + y) / kSlabRows] = relax_step + kMatchingCount - 1;
   }
 }

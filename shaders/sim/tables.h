@@ -40,12 +40,15 @@ RULE_CONST kBindResults = 11;      // hash: TileResult [active tiles]
 RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tiles' boxes, one after the other
 
 RULE_CONST kSubStepMost = 32;
-RULE_CONST kSlabRows = 8;  // what relax skips where nothing has changed
+RULE_CONST kGatherQuads = 4;    // cells of a tile, in fours, that a lane gathers
+RULE_CONST kBlocksPerSide = 2;  // of a tile, in a fused sweep
+RULE_CONST kSlabRows = 8;       // what relax skips where nothing has changed
 RULE_CONST kSlabs = kTileSize / kSlabRows;
 RULE_CONST kSlabCells = kSlabRows * kTileSize;
-RULE_CONST kMaskRows = 32;          // rows of a free mask's word, and of a block of a domain
-RULE_CONST kLargeParts = 4;         // groups that share a large primitive
-RULE_CONST kDispatchColumns = 256;  // groups per row of a dispatch whose size the GPU finds
+RULE_CONST kMaskRows = 32;             // rows of a free mask's word, and of a block of a domain
+RULE_CONST kLargeParts = 4;            // groups that share a large primitive
+RULE_CONST kDispatchRowsMost = 65535;  // GL guarantees no more
+RULE_CONST kDispatchColumns = 256;     // groups per row of a dispatch whose size the GPU finds
 
 RULE_CONST kRowPenetrates = 1;
 RULE_CONST kRowReceives = 2;
@@ -87,7 +90,6 @@ struct TileEntry {
   int inside_columns;  // how much of it lies in the world
   int inside_rows;
   int neighbour[9];  // active tile at (dy + 1) * 3 + (dx + 1), or -1; 4 is the tile itself
-  int unused[2];
 };
 
 /// What the tick knows of an active tile's slabs.
@@ -131,7 +133,6 @@ struct BodyEntry {
   int triangle_count;
   int first_edge;  // int in kBindIndices
   int edge_count;
-  int unused;
 };
 
 /// A search domain in one sub-step.
@@ -147,7 +148,6 @@ struct DomainEntry {
   int tile_x0;     // the domain's tiles, in tiles
   int tile_y0;
   int tile_columns;
-  int unused;
 };
 
 /// What a tick did to an active tile.
@@ -160,7 +160,6 @@ struct TileResult {
   uint hash_high[2];  // and of their high lanes
   uint height[2];     // sums of the low and high 16 bits of height + 2^30
   int first_staged;   // the box's differences in kBindStaging, row-major
-  int unused;
 };
 
 SPOOR_RULES_END

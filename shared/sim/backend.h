@@ -44,7 +44,8 @@ class Backend {
   virtual std::string renderer() const = 0;
 
   /// Begins a tick. The tick before must be settled (asserted), all earlier ones collected. The base must live on.
-  /// Errors, which leave the backend as it was: a device that is lost or has not the memory.
+  /// Errors: a device that is lost or has not the memory. The state goes on elsewhere once what is settled is
+  /// collected.
   [[nodiscard]] virtual Status submit(TickPlan plan, const BaseTerrain& base, const WorldState& state) = 0;
 
   /// Ends the submitted tick: takes the state's tiles to its versions, hashes, sums and wake masks, and the state's

@@ -32,16 +32,18 @@ Status Simulation::begin(std::span<const Pose> poses) {
   result.update.tick = plan->tick;
   result.update.poses.assign(poses.begin(), poses.end());
   result.too_fast = plan->too_fast;
-  if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status) return status;
+  if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status)
+    return failure_.emplace(Error{status.error()});
   submitted_ = std::move(result);
   return {};
 }
 
 /// Takes the state to the submitted tick, if there is one.
 Status Simulation::settle() {
+  if (failure_) return *failure_;
   if (!submitted_) return {};
   auto effect = backend_->settle(state_);
-  if (!effect) return Error{"tick " + std::to_string(submitted_->update.tick) + ": " + effect.error()};
+  if (!effect) return failure_.emplace(Error{effect.error()});
   TickResult result = *std::exchange(submitted_, std::nullopt);
   for (int stage = 0; stage < kStageCount; ++stage) effect->stage_ms[stage] += result.effect.stage_ms[stage];
   result.effect = std::move(*effect);
@@ -64,7 +66,8 @@ Result<TickResult> Simulation::finish() {
   in_flight_.pop_front();
   {
     StageTimer timer(result.effect.stage_ms, Stage::delta);
-    if (Status status = backend_->collect(state_, result.effect.changes); !status) return Error{status.error()};
+    if (Status status = backend_->collect(state_, result.effect.changes); !status)
+      return failure_.emplace(Error{status.error()});
     result.update.tiles = encodeTiles(result.effect.changes);
   }
   return result;

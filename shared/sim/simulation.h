@@ -35,7 +35,7 @@ class Simulation {
   [[nodiscard]] Status begin(std::span<const Pose> poses);
 
   /// The second half, of the oldest tick begun (asserted): waits for it, and encodes what it changed.
-  /// Errors: the device is lost; the session cannot go on.
+  /// Errors: the device is lost; the session cannot go on, and every later call says so again.
   Result<TickResult> finish();
 
   static constexpr std::size_t kTicksInFlight = 2;
@@ -55,6 +55,7 @@ class Simulation {
   std::unique_ptr<Backend> backend_;
   WorldState state_;
   std::optional<TickResult> submitted_;  // with the backend; without its effect, and the state knows nothing of it
+  std::optional<Error> failure_;         // of the backend; nothing goes on after it
   std::deque<TickResult> in_flight_;     // settled, their cells not collected
 };
 
