@@ -6,7 +6,7 @@ spoor_packages=(
   libenet-dev libflatbuffers-dev flatbuffers-compiler libzstd-dev
   libglfw3-dev libglm-dev libepoxy-dev libegl-dev libegl-mesa0 libgl1-mesa-dri
   libgdal-dev libassimp-dev libtomlplusplus-dev libspdlog-dev libfmt-dev libpng-dev
-  libgtest-dev
+  libgtest-dev glslang-tools
 )
 
 fail() {

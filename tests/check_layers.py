@@ -46,7 +46,7 @@ MAY_LINK = {
     "shared": {"spoor_flags", "spoor_shared", "Threads::Threads"},
     "shaders": {"spoor_gl", "spoor_backends", "spoor_shared", "epoxy"},
     "protocol": {"spoor_protocol", "spoor_shared", "enet", "flatbuffers", "zstd", "fmt", "spdlog"},
-    "tests/bench": {"spoor-bench", "spoor_backends"},
+    "tests/bench": {"spoor-bench", "spoor_backends", "spoor_gl"},
 }
 NEVER_LINK = {"server": {"spoor_render", "spoor_client", "spoor_session"}, "client": {"spoor_import", "spoor_host"}}
 

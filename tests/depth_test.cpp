@@ -11,6 +11,11 @@ namespace {
 
 constexpr int kNone = rules::kNoUnderside;
 
+class DepthStage : public OnEveryBackend {
+ protected:
+  std::unique_ptr<StageRig> rigOf(const World& world) const { return makeStageRig(GetParam(), world); }
+};
+
 struct Rectangle {
   int columns, rows;
 };
@@ -25,71 +30,71 @@ Mesh slopingTriangle() {
   return mesh;
 }
 
-TEST(Depth, ASlopingTriangleOverFiveByFiveCells) {
+TEST_P(DepthStage, ASlopingTriangleOverFiveByFiveCells) {
   ScenePack pack = flatPack(5, 5);
   addBody(pack, slopingTriangle(), 0, 0, 0);
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.press({placeBody(world.pack, 0, Pose{})});
+  const auto rig = rigOf(world);
+  rig->press({placeBody(world.pack, 0, Pose{})});
   // Cells inside have the plane's height at their centre; those on an edge its lowest point within the cell.
   const std::vector<std::int32_t> expected = {0,    0,    0,     0,     0,      // y = 0
                                               1000, 1500, 1500,  1003,  3,      //
                                               2000, 2500, 2003,  1003,  kNone,  //
                                               3000, 3003, 2003,  kNone, kNone,  //
                                               4000, 3003, kNone, kNone, kNone};
-  EXPECT_EQ(rig.cells(rig.area.underside), expected);
+  EXPECT_EQ(rig->underside(), expected);
 }
 
-TEST(Depth, ABoxCoversEveryCellThatItTouches) {
+TEST_P(DepthStage, ABoxCoversEveryCellThatItTouches) {
   ScenePack pack = flatPack(5, 5);
   addBody(pack, boxMesh(2000, 2000, 500), 2500, 2500, 300);
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
+  const auto rig = rigOf(world);
+  rig->press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
   std::vector<std::int32_t> expected(25, kNone);
   for (const int i : {6, 7, 8, 11, 12, 13, 16, 17, 18}) expected[std::size_t(i)] = -300;
-  EXPECT_EQ(rig.cells(rig.area.underside), expected);
+  EXPECT_EQ(rig->underside(), expected);
 }
 
-TEST(Depth, ABladeThinnerThanACellStillPresses) {
+TEST_P(DepthStage, ABladeThinnerThanACellStillPresses) {
   ScenePack pack = flatPack(5, 5);
   addBody(pack, bladeMesh(3000, 1000), 2500, 2500, 200);
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
+  const auto rig = rigOf(world);
+  rig->press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
   std::vector<std::int32_t> expected(25, kNone);
   for (const int i : {7, 12, 17, 22}) expected[std::size_t(i)] = -200;  // from y = 1000 to y = 4000, both inclusive
-  EXPECT_EQ(rig.cells(rig.area.underside), expected);
+  EXPECT_EQ(rig->underside(), expected);
 }
 
-TEST(Depth, BeneathAnArchTheGapStaysHigh) {
+TEST_P(DepthStage, BeneathAnArchTheGapStaysHigh) {
   ScenePack pack = flatPack(9, 3);
   addBody(pack, archMesh(8000, 1000, 3000), 4500, 1500, 100);
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
-  const auto cells = rig.cells(rig.area.underside);
+  const auto rig = rigOf(world);
+  rig->press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
+  const auto cells = rig->underside();
   const std::vector<std::int32_t> middle(cells.begin() + 9, cells.begin() + 18);
   EXPECT_EQ(middle, (std::vector<std::int32_t>{-100, -100, -100, 1400, 1400, 1400, -100, -100, -100}));
 }
 
-TEST(Depth, TheLowestOfSeveralBodiesCounts) {
+TEST_P(DepthStage, TheLowestOfSeveralBodiesCounts) {
   ScenePack pack = flatPack(5, 5);
   addBody(pack, boxMesh(2000, 2000, 500), 2000, 2500, 100);
   addBody(pack, boxMesh(2000, 2000, 500), 3500, 2500, 400);
   const World world(std::move(pack));
   const auto poses = initialState(world.id, world.base).poses;
   const PlacedBody first = placeBody(world.pack, 0, poses[0]), second = placeBody(world.pack, 1, poses[1]);
-  StageRig rig(world), reversed(world);
-  rig.press({first, second});
-  reversed.press({second, first});
-  EXPECT_EQ(rig.cells(rig.area.underside)[11], -100);
-  EXPECT_EQ(rig.cells(rig.area.underside)[12], -400);
-  EXPECT_EQ(rig.cells(rig.area.underside), reversed.cells(reversed.area.underside));
+  const auto rig = rigOf(world), reversed = rigOf(world);
+  rig->press({first, second});
+  reversed->press({second, first});
+  EXPECT_EQ(rig->underside()[11], -100);
+  EXPECT_EQ(rig->underside()[12], -400);
+  EXPECT_EQ(rig->underside(), reversed->underside());
 }
 
-/// Meshes of all shapes, in any pose, in and out of the world: the native stage and the oracle draw the same.
-void checkRandomBodies(int width, int height, int size_cells, std::uint32_t seed) {
+/// Meshes of all shapes, in any pose, in and out of the world: the stage and the oracle draw the same.
+void checkRandomBodies(const BackendCase& backend_case, int width, int height, int size_cells, std::uint32_t seed) {
   std::mt19937 engine(seed);
   const auto pick = [&](int low, int high) { return low + int(engine() % std::uint32_t(high - low + 1)); };
   ScenePack pack = flatPack(width, height);
@@ -100,8 +105,8 @@ void checkRandomBodies(int width, int height, int size_cells, std::uint32_t seed
   const World world(std::move(pack));
   for (int round = 0; round < 6; ++round) {
     std::vector<PlacedBody> bodies;
-    StageRig rig(world, 2);
-    DenseWorld dense = denseCopy(rig);
+    const auto rig = makeStageRig(backend_case, world);
+    DenseWorld dense = denseCopy(*rig);
     for (int i = 0; i < 5; ++i) {
       const Pose pose{pick(-2000, (width + 2) * 1000),
                       pick(-2000, (height + 2) * 1000),
@@ -113,18 +118,17 @@ void checkRandomBodies(int width, int height, int size_cells, std::uint32_t seed
       bodies.push_back(placeBody(world.pack, i, pose));
       oracleDepth(dense, placeForOracle(world.pack, i, pose));
     }
-    rig.press(bodies);
-    ASSERT_EQ(rig.cells(rig.area.underside), insideCells(dense, dense.underside))
-        << width << " x " << height << ", round " << round;
+    rig->press(bodies);
+    ASSERT_EQ(rig->underside(), insideCells(dense, dense.underside)) << width << " x " << height << ", round " << round;
   }
 }
 
-TEST(Depth, EqualsTheOracleOnWorldsOfAnySize) {
+TEST_P(DepthStage, EqualsTheOracleOnWorldsOfAnySize) {
   for (const auto& [columns, rows] : {Rectangle{77, 131}, Rectangle{1, 200}, Rectangle{65, 1}, Rectangle{64, 64}})
-    checkRandomBodies(columns, rows, 12, std::uint32_t(columns));
+    checkRandomBodies(GetParam(), columns, rows, 12, std::uint32_t(columns));
 }
 
-TEST(Depth, EqualsTheOracleForABodyOfThreeTiles) { checkRandomBodies(203, 197, 200, 3); }
+TEST_P(DepthStage, EqualsTheOracleForABodyOfThreeTiles) { checkRandomBodies(GetParam(), 203, 197, 200, 3); }
 
 TEST(Depth, DomainsThatShareRowsOfATileKeepTheLowestUndersideOfEach) {
   ScenePack pack = flatPack(128, 64);
@@ -137,7 +141,7 @@ TEST(Depth, DomainsThatShareRowsOfATileKeepTheLowestUndersideOfEach) {
     const CellBox& box = sub_step.bodies.back().box;
     sub_step.domains.push_back({{box.x0 - 1, 0, box.x1 + 1, 64}, {i}});
   }
-  StageRig rig(world, 4);
+  NativeStageRig rig(world, 4);
   for (int round = 0; round < 400; ++round) {
     rig.area.clearUnderside(world.pack, rig.pool);
     runDepth(rig.context, sub_step);
@@ -149,6 +153,8 @@ TEST(Depth, DomainsThatShareRowsOfATileKeepTheLowestUndersideOfEach) {
       }
   }
 }
+
+SPOOR_ON_EVERY_BACKEND(DepthStage);
 
 /// A random triangle, corners within a window of `span` subcells; some small ones, some with level or upright edges.
 std::array<rules::RasterPoint, 3> randomTriangle(std::mt19937& engine, int span) {

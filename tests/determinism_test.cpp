@@ -1,4 +1,5 @@
-// One rule, the same hash: whatever the threads, kernels, order of bodies, and wherever a session was taken up again.
+// One rule, the same hash: whatever the backend, threads, kernels, order of bodies, and wherever a session was taken up
+// again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,20 +11,24 @@ namespace {
 
 using Hashes = std::vector<std::uint64_t>;
 
-/// Four bodies that meet in the middle of 4 x 3 tiles, one of them faster than a cell a tick.
-RandomWorld meeting() {
+constexpr int kMeetingTicks = 24;
+
+/// Four bodies that meet in the middle of 4 x 3 tiles, one of them faster than a cell a tick. With `ticks` fewer than
+/// kMeetingTicks they start nearer to each other.
+RandomWorld meeting(int ticks = kMeetingTicks) {
   RandomWorld made;
   made.pack = noisePack(250, 170, 77, -5000, 5000, 4000);
   made.pack.obstacle_threshold_q = 30;
-  addBody(made.pack, boxMesh(9000, 5000, 4000), 60000, 80000, 800);
-  addBody(made.pack, wedgeMesh(7000, 12000, 4000), 190000, 85000, 1500);
-  addBody(made.pack, tetrahedronMesh(6000), 125000, 30000, 2500);
-  addBody(made.pack, bladeMesh(20000, 5000), 130000, 140000, 700);
+  const int ahead = kMeetingTicks - ticks;
+  addBody(made.pack, boxMesh(9000, 5000, 4000), 60000 + ahead * 2900, 80000, 800);
+  addBody(made.pack, wedgeMesh(7000, 12000, 4000), 190000 - ahead * 2900, 85000, 1500);
+  addBody(made.pack, tetrahedronMesh(6000), 125000, 30000 + ahead * 2300, 2500);
+  addBody(made.pack, bladeMesh(20000, 5000), 130000, 140000 - ahead * 2500, 700);
   std::vector<Pose> poses = initialState({}, BaseTerrain(made.pack)).poses;
-  for (int tick = 0; tick < 24; ++tick) {
+  for (int tick = 0; tick < ticks; ++tick) {
     poses = {moved(poses[0], 2900, 0, 0, 30), moved(poses[1], -2900, 100), moved(poses[2], 10, 2300, -20, 200),
              moved(poses[3], -100, -2500, 0, -50)};
-    if (tick < 20)
+    if (tick < ticks - 4)
       made.ticks.push_back(poses);
     else
       made.ticks.push_back(made.ticks.back());
@@ -31,8 +36,7 @@ RandomWorld meeting() {
   return made;
 }
 
-Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options) {
-  Simulation simulation = world.simulate(options);
+Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& ticks) {
   Hashes hashes;
   for (const auto& poses : ticks) {
     const auto result = simulation.step(poses);
@@ -44,15 +48,38 @@ Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks,
   return hashes;
 }
 
-class Determinism : public ::testing::Test {
- protected:
-  RandomWorld made_ = meeting();
+Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options) {
+  return hashesOf(world.simulate(options), ticks);
+}
+
+Hashes hashesOn(const BackendCase& backend_case, const World& world, const std::vector<std::vector<Pose>>& ticks) {
+  return hashesOf(world.simulateOn(backend_case), ticks);
+}
+
+/// Four bodies that meet, with the hashes of native on one thread.
+struct Meeting {
+  explicit Meeting(int ticks) : made_(meeting(ticks)) {}
+  RandomWorld made_;
   World world_{made_.pack};
   Hashes expected_ = hashesOf(world_, made_.ticks, {.thread_count = 1});
 };
 
-TEST_F(Determinism, TwoRunsHaveTheSameHashes) {
-  EXPECT_EQ(hashesOf(world_, made_.ticks, {.thread_count = 1}), expected_);
+class Determinism : public ::testing::Test, protected Meeting {
+ protected:
+  Determinism() : Meeting(kMeetingTicks) {}
+};
+
+class DeterminismOfBackends : public OnEveryBackend, protected Meeting {
+ protected:
+  DeterminismOfBackends() : Meeting(GetParam().slow() ? 8 : kMeetingTicks) {}
+};
+
+TEST_P(DeterminismOfBackends, TwoRunsHaveNativesHashes) {
+  EXPECT_EQ(hashesOn(GetParam(), world_, made_.ticks), expected_);
+  EXPECT_EQ(hashesOn(GetParam(), world_, made_.ticks), expected_);
+}
+
+TEST_F(Determinism, EveryTickHasAnotherHash) {
   Hashes distinct = expected_;
   std::ranges::sort(distinct);
   EXPECT_EQ(std::ranges::unique(distinct).begin(), distinct.end()) << "every tick has another hash";
@@ -75,11 +102,12 @@ TEST_F(Determinism, SkippingWhatIsSettledDoesNotShow) {
 }
 
 /// Hashes of the tiles alone, at every tick, with the bodies listed in another order.
-Hashes tileHashesInOrder(const RandomWorld& made, const std::vector<std::size_t>& order) {
+Hashes tileHashesInOrder(const BackendCase& backend_case, const RandomWorld& made,
+                         const std::vector<std::size_t>& order) {
   ScenePack pack = made.pack;
   for (std::size_t i = 0; i < order.size(); ++i) pack.bodies[i] = made.pack.bodies[order[i]];
   const World world(std::move(pack));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(backend_case);
   Hashes hashes;
   for (const auto& poses : made.ticks) {
     std::vector<Pose> permuted;
@@ -90,19 +118,23 @@ Hashes tileHashesInOrder(const RandomWorld& made, const std::vector<std::size_t>
   return hashes;
 }
 
-TEST_F(Determinism, TheOrderOfBodiesDoesNotShow) {
+TEST_P(DeterminismOfBackends, TheOrderOfBodiesDoesNotShow) {
   std::vector<std::size_t> order = {0, 1, 2, 3};
-  const Hashes expected = tileHashesInOrder(made_, order);
-  while (std::ranges::next_permutation(order).found) ASSERT_EQ(tileHashesInOrder(made_, order), expected);
+  const Hashes expected = tileHashesInOrder(nativeCases()[0], made_, order);
+  for (int i = 1; std::ranges::next_permutation(order).found; ++i) {
+    if (GetParam().gl && i % (GetParam().slow() ? 23 : 8) != 7) continue;  // three of the 24 orders, or one
+    ASSERT_EQ(tileHashesInOrder(GetParam(), made_, order), expected);
+  }
 }
 
-TEST_F(Determinism, ASessionTakenUpFromASnapshotGoesOnTheSame) {
+TEST_P(DeterminismOfBackends, ASessionTakenUpFromASnapshotGoesOnTheSame) {
   for (const std::size_t cut : {std::size_t(0), std::size_t(1), std::size_t(7), std::size_t(21)}) {
-    Simulation before = world_.simulate();
+    if (cut > made_.ticks.size()) continue;
+    Simulation before = world_.simulateOn(GetParam());
     for (std::size_t i = 0; i < cut; ++i) ASSERT_TRUE(before.step(made_.ticks[i]));
     auto state = decodeSnapshot(encodeSnapshot(before.state(), world_.base), world_.id, world_.base);
     ASSERT_TRUE(state) << state.error();
-    Simulation after(world_.base, std::move(*state), makeNativeBackend({.thread_count = 2}));
+    Simulation after(world_.base, std::move(*state), borrowBackend(GetParam()));
     for (std::size_t i = cut; i < made_.ticks.size(); ++i) {
       const auto result = after.step(made_.ticks[i]);
       ASSERT_TRUE(result);
@@ -111,8 +143,8 @@ TEST_F(Determinism, ASessionTakenUpFromASnapshotGoesOnTheSame) {
   }
 }
 
-TEST_F(Determinism, AMirrorThatSimulatesFollowsAServer) {
-  Simulation server = world_.simulate({.thread_count = 2}), mirror = world_.simulate({.thread_count = 1});
+TEST_P(DeterminismOfBackends, AMirrorOnNativeFollowsAServer) {
+  Simulation server = world_.simulateOn(GetParam()), mirror = world_.simulate({.thread_count = 1});
   for (const auto& poses : made_.ticks) {
     const auto published = server.step(poses);
     ASSERT_TRUE(published);
@@ -123,7 +155,7 @@ TEST_F(Determinism, AMirrorThatSimulatesFollowsAServer) {
   }
 }
 
-TEST(DeterminismOfLargeBodies, ADomainSharedOutBetweenThreadsHasTheSameHashes) {
+TEST_P(DeterminismOfBackends, ADomainSharedOutBetweenThreadsOrGroupsHasTheSameHashes) {
   // Two wide bodies side by side: every stage hands parts of their domains to different threads.
   ScenePack pack = noisePack(500, 400, 6, -4000, 4000, 30000);
   addBody(pack, wedgeMesh(200000, 300000, 20000), 120000, 200000, 3000);
@@ -131,15 +163,23 @@ TEST(DeterminismOfLargeBodies, ADomainSharedOutBetweenThreadsHasTheSameHashes) {
   const World world(std::move(pack));
   std::vector<std::vector<Pose>> ticks;
   std::vector<Pose> poses = initialState(world.id, world.base).poses;
-  for (int tick = 0; tick < 4; ++tick) {
+  for (int tick = 0; tick < (GetParam().slow() ? 2 : 4); ++tick) {
     poses = {moved(poses[0], 900, 0, -100), moved(poses[1], -800, 300, -300, 20)};
     ticks.push_back(poses);
   }
   const Hashes expected = hashesOf(world, ticks, {.thread_count = 1});
-  for (const int threads : {2, 3, 8}) EXPECT_EQ(hashesOf(world, ticks, {.thread_count = threads}), expected) << threads;
+  if (GetParam().gl) {
+    EXPECT_EQ(hashesOn(GetParam(), world, ticks), expected);
+    return;
+  }
+  for (const int threads : {2, 3, 8}) {
+    BackendCase backend_case = GetParam();
+    backend_case.thread_count = threads;
+    EXPECT_EQ(hashesOn(backend_case, world, ticks), expected) << threads;
+  }
 }
 
-TEST(DeterminismOfManyBodies, BodiesThatShareATileButNoDomainDoNotRace) {
+TEST_P(DeterminismOfBackends, BodiesThatShareATileButNoDomainDoNotRace) {
   // Long boxes side by side along y, every other one high above the ground: what the domains note about the rows of
   // the tile that they share must not get lost.
   ScenePack pack = noisePack(64, 128, 5, -3000, 3000, 30000);
@@ -148,15 +188,22 @@ TEST(DeterminismOfManyBodies, BodiesThatShareATileButNoDomainDoNotRace) {
   const World world(std::move(pack));
   std::vector<std::vector<Pose>> ticks;
   std::vector<Pose> poses = initialState(world.id, world.base).poses;
-  for (int tick = 0; tick < 60; ++tick) {
+  for (int tick = 0; tick < (GetParam().slow() ? 12 : 60); ++tick) {
     for (std::size_t i = 0; i < poses.size(); ++i)
       poses[i] = moved(poses[i], tick % 2 == 0 ? 900 : -900, 0, tick % 2 == 0 ? -300 : 290);
     ticks.push_back(poses);
   }
   const Hashes expected = hashesOf(world, ticks, {.thread_count = 1});
+  if (GetParam().gl) {
+    EXPECT_EQ(hashesOn(GetParam(), world, ticks), expected);
+    return;
+  }
   for (const int threads : {2, 4, 8})
-    for (int run = 0; run < 3; ++run)
-      ASSERT_EQ(hashesOf(world, ticks, {.thread_count = threads}), expected) << threads << " threads";
+    for (int run = 0; run < 3; ++run) {
+      BackendCase backend_case = GetParam();
+      backend_case.thread_count = threads;
+      ASSERT_EQ(hashesOn(backend_case, world, ticks), expected) << threads << " threads";
+    }
 }
 
 TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
@@ -171,10 +218,9 @@ TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
   }
 }
 
-TEST(Simulation, RefusesPosesThatCannotBeAndStaysAsItWas) {
-  RandomWorld made = meeting();
-  const World world(made.pack);
-  Simulation simulation = world.simulate();
+TEST_P(DeterminismOfBackends, PosesThatCannotBeAreRefusedAndTheStateStaysAsItWas) {
+  const RandomWorld& made = made_;
+  Simulation simulation = world_.simulateOn(GetParam());
   ASSERT_TRUE(simulation.step(made.ticks[0]));
   const std::uint64_t before = stateHash(simulation.state());
   std::vector<Pose> poses = made.ticks[1];
@@ -191,6 +237,8 @@ TEST(Simulation, RefusesPosesThatCannotBeAndStaysAsItWas) {
   EXPECT_EQ(stateHash(simulation.state()), before);
   EXPECT_TRUE(simulation.step(made.ticks[1]));
 }
+
+SPOOR_ON_EVERY_BACKEND(DeterminismOfBackends);
 
 }  // namespace
 }  // namespace spoor::test

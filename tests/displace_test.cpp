@@ -13,60 +13,62 @@ namespace {
 
 constexpr int kNone = rules::kNoUnderside;
 
+class DisplaceStage : public OnEveryBackend {};
+
 std::vector<std::int32_t> level(int height) { return std::vector<std::int32_t>(25, height); }
 
-TEST(Displace, FiveByFiveCellsUnderASmallBody) {
+TEST_P(DisplaceStage, FiveByFiveCellsUnderASmallBody) {
   const World world(groundPack(5, 5, level(1000), 5000));
-  StageRig rig(world);
-  rig.setUnderside({kNone, kNone, kNone, kNone, kNone,  //
-                    kNone, 900,   800,   900,   kNone,  //
-                    kNone, 900,   700,   900,   kNone,  //
-                    kNone, kNone, kNone, kNone, kNone,  //
-                    kNone, kNone, kNone, kNone, kNone});
-  rig.displace();
+  const auto rig = makeStageRig(GetParam(), world);
+  rig->setUnderside({kNone, kNone, kNone, kNone, kNone,  //
+                     kNone, 900,   800,   900,   kNone,  //
+                     kNone, 900,   700,   900,   kNone,  //
+                     kNone, kNone, kNone, kNone, kNone,  //
+                     kNone, kNone, kNone, kNone, kNone});
+  rig->moveSoil();
   // Row 1 goes down to row 0; of row 2 the sides go to the side, and the middle up to row 3.
-  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1100, 1200, 1100, 1000,  //
-                                                                   1000, 900,  800,  900,  1000,  //
-                                                                   1100, 900,  700,  900,  1100,  //
-                                                                   1000, 1000, 1300, 1000, 1000,  //
-                                                                   1000, 1000, 1000, 1000, 1000}));
+  EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1000, 1100, 1200, 1100, 1000,  //
+                                                      1000, 900,  800,  900,  1000,  //
+                                                      1100, 900,  700,  900,  1100,  //
+                                                      1000, 1000, 1300, 1000, 1000,  //
+                                                      1000, 1000, 1000, 1000, 1000}));
 }
 
-TEST(Displace, WithoutEnoughRoomEachSourceGetsItsShareRoundedDown) {
+TEST_P(DisplaceStage, WithoutEnoughRoomEachSourceGetsItsShareRoundedDown) {
   const World world(groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000));
-  StageRig rig(world);
+  const auto rig = makeStageRig(GetParam(), world);
   // Cells 1 and 2 want to give 400 and 300 to cell 0, under a roof 500 above it; cells 3 and 4 are no place to go.
-  rig.setUnderside({1500, 600, 700, 1000, 1000});
-  rig.displace();
+  rig->setUnderside({1500, 600, 700, 1000, 1000});
+  rig->moveSoil();
   // floor(400 * 500 / 700) = 285, floor(300 * 500 / 700) = 214: one unit of room stays free.
-  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1499, 715, 786, 1000, 1000}));
+  EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1499, 715, 786, 1000, 1000}));
 }
 
-TEST(Displace, WithoutAnyFreeCellAllSoilStays) {
+TEST_P(DisplaceStage, WithoutAnyFreeCellAllSoilStays) {
   const World world(groundPack(3, 1, {1000, 1000, 1000}, 5000));
-  StageRig rig(world);
-  rig.setUnderside({500, 600, 1000});
-  rig.displace();
-  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1000, 1000}));
+  const auto rig = makeStageRig(GetParam(), world);
+  rig->setUnderside({500, 600, 1000});
+  rig->moveSoil();
+  EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1000, 1000, 1000}));
 }
 
-TEST(Displace, DownToBedrockAndNoDeeper) {
+TEST_P(DisplaceStage, DownToBedrockAndNoDeeper) {
   const World world(groundPack(3, 1, {1000, 1000, 1000}, 300));
-  StageRig rig(world);
-  rig.setUnderside({kNone, -5000, kNone});
-  rig.displace();
-  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1300, 700, 1000}));
+  const auto rig = makeStageRig(GetParam(), world);
+  rig->setUnderside({kNone, -5000, kNone});
+  rig->moveSoil();
+  EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1300, 700, 1000}));
 }
 
-TEST(Displace, AGapOfTheObstacleThresholdTakesNothing) {
+TEST_P(DisplaceStage, AGapOfTheObstacleThresholdTakesNothing) {
   ScenePack pack = groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000);
   pack.obstacle_threshold_q = 80;
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.setUnderside({kNone, 1080, 900, 1081, kNone});
-  rig.displace();
+  const auto rig = makeStageRig(GetParam(), world);
+  rig->setUnderside({kNone, 1080, 900, 1081, kNone});
+  rig->moveSoil();
   // Cell 1 has a gap of 80: an obstacle. Cell 3 has 81: room for 81 of the 100.
-  EXPECT_EQ(rig.cells(rig.area.height), (std::vector<std::int32_t>{1000, 1000, 919, 1081, 1000}));
+  EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1000, 1000, 919, 1081, 1000}));
 }
 
 TEST(Displace, AShareIsRequestTimesRoomOverTotalForTheLargestNumbers) {
@@ -80,56 +82,61 @@ TEST(Displace, AShareIsRequestTimesRoomOverTotalForTheLargestNumbers) {
       }
 }
 
-/// Random ground under random undersides: the native stages and the oracle leave the same heights, and their sum.
-void checkRandomWorld(int columns, int rows, std::uint32_t seed) {
+/// Random ground under random undersides: the stages and the oracle leave the same heights, and their sum.
+void checkRandomWorld(const BackendCase& backend_case, int columns, int rows, std::uint32_t seed) {
   std::mt19937 engine(seed);
   ScenePack pack = noisePack(columns, rows, engine(), -3000, 3000, seed % 2 == 0 ? 100000 : 700);
   pack.obstacle_threshold_q = seed % 3 == 0 ? 0 : 300;
   const World world(std::move(pack));
-  StageRig rig(world, 1 + int(seed % 3));
+  const auto rig = makeStageRig(backend_case, world);
   std::vector<std::int32_t> underside;
   const auto covered = 1 + engine() % 9;  // of ten cells
   for (int i = 0; i < columns * rows; ++i)
     underside.push_back(engine() % 10 >= covered ? kNone : int(engine() % 8000) - 4000);
-  rig.setUnderside(underside);
-  const auto before = rig.cells(rig.area.height);
-  DenseWorld dense = denseCopy(rig);
-  rig.displace();
+  rig->setUnderside(underside);
+  const auto before = rig->height();
+  DenseWorld dense = denseCopy(*rig);
+  rig->moveSoil();
   const auto overlap = oracleOverlap(dense, world.pack.obstacle_threshold_q);
   oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.obstacle_threshold_q);
-  const auto after = rig.cells(rig.area.height);
+  const auto after = rig->height();
   ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
   ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)),
             std::accumulate(before.begin(), before.end(), std::int64_t(0)));
 }
 
-TEST(Displace, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
+TEST_P(DisplaceStage, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
   for (std::uint32_t seed = 0; seed < 12; ++seed)
     for (const auto& [columns, rows] : {std::pair{77, 41}, {1, 200}, {65, 1}, {9, 66}})
-      checkRandomWorld(columns, rows, seed);
+      checkRandomWorld(GetParam(), columns, rows, seed);
 }
 
-TEST(Displace, RowsThatShareTargetsDoNotRace) {
+TEST_P(DisplaceStage, RowsThatShareTargetsDoNotRace) {
   // Many rows, more than one task's share, whose cells go by turns to the same two targets.
   constexpr int kColumns = 256, kRows = 512;
   const World world(groundPack(kColumns, kRows, std::vector<std::int32_t>(kColumns * kRows, 1000), 5000));
-  StageRig rig(world, 4);
-  for (int round = 0; round < 10; ++round) {
+  BackendCase backend_case = GetParam();
+  backend_case.thread_count = 4;
+  const auto rig = makeStageRig(backend_case, world);
+  for (int round = 0; round < (backend_case.gl ? 4 : 10); ++round) {
     std::vector<std::int32_t> underside(kColumns * kRows, 995);
     underside[0] = underside[1] = kNone;
-    rig.set(rig.area.height, std::vector<std::int32_t>(kColumns * kRows, 1000));
-    rig.setUnderside(underside);
-    runPenetration(rig.context, rig.domain);
-    rig.domain.target.resize(rig.domain.overlap.size());
-    for (std::size_t i = 0; i < rig.domain.target.size(); ++i) rig.domain.target[i] = int(i % 2);
-    rig.domain.receives.assign(kRows, 0);
-    rig.domain.receives[0] = 1;
-    runDisplace(rig.context, rig.domain, 0);
-    ASSERT_EQ(rig.area.height[rig.area.offsetAt(0, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
-    ASSERT_EQ(rig.area.height[rig.area.offsetAt(1, 0)], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
-    ASSERT_EQ(rig.area.height[rig.area.offsetAt(255, 511)], 995) << "round " << round;
+    rig->setHeight(std::vector<std::int32_t>(kColumns * kRows, 1000));
+    rig->setUnderside(underside);
+    rig->penetration();
+    rig->nearest();
+    Cells target(kColumns * kRows);
+    for (std::size_t i = 0; i < target.size(); ++i) target[i] = int(i % 2);
+    rig->setTarget(target);
+    rig->displace();
+    const Cells height = rig->height();
+    ASSERT_EQ(height[0], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
+    ASSERT_EQ(height[1], 1000 + 5 * (kColumns * kRows / 2 - 1)) << "round " << round;
+    ASSERT_EQ(height[kColumns * kRows - 1], 995) << "round " << round;
   }
 }
+
+SPOOR_ON_EVERY_BACKEND(DisplaceStage);
 
 }  // namespace
 }  // namespace spoor::test

@@ -91,7 +91,7 @@ GLuint valueIn(const GlBuffer& buffer) {
 TEST_F(GlHost, LimitsSufficeHere) {
   const auto limits = checkLimits(*context_);
   ASSERT_TRUE(limits) << limits.error();
-  std::printf("%s", describe(*limits).c_str());
+  for (const std::string& line : describe(*limits)) std::printf("%s\n", line.c_str());
   EXPECT_EQ(limits->renderer, context_->renderer());
   EXPECT_EQ(limits->software, context_->software());
   EXPECT_TRUE(glStatus("checkLimits"));
@@ -107,8 +107,8 @@ TEST(GlLimits, ErrorNamesEveryLimitThatFallsShort) {
   limits.storage_bindings = 16;
   limits.compute_storage_blocks = 8;
   limits.shared_bytes = 32768;
-  limits.group_invocations = 256;
-  limits.group_size_x = 256;
+  limits.group_invocations = 1024;
+  limits.group_size_x = 1024;
   limits.group_count_x = 65535;
   const Status status = limitsStatus(limits);
   ASSERT_FALSE(status);

@@ -1,5 +1,6 @@
-// Every example scene from its committed pack: one hash at any thread count and kernel set, a balanced ledger at every
-// tick, and sleep soon after the bodies stop. tests/golden/NAME.txt holds a hash for every 50th tick.
+// Every example scene from its committed pack: one hash on every backend, at any thread count and kernel set, a
+// balanced ledger at every tick, and sleep soon after the bodies stop. tests/golden/NAME.txt holds a hash for every
+// 50th tick.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "shared/base/json.h"
 #include "shared/sim/simulation.h"
 #include "shared/world/script.h"
+#include "tests/backends.h"
 
 namespace spoor {
 namespace {
@@ -48,6 +50,46 @@ std::vector<std::string> sceneNames() {
 }
 
 class Golden : public testing::TestWithParam<std::string> {};
+
+/// The two schedules of gl, and how many ticks of a scene they do: software renderers are slow.
+std::vector<test::BackendCase> schedules() {
+  std::vector<test::BackendCase> cases = test::glCases();
+  std::erase_if(cases, [](const auto& backend_case) { return backend_case.group != 64; });
+  return cases;
+}
+
+std::int32_t ticksOnGl(const ScenePack& pack, const test::BackendCase& backend_case) {
+  return std::min(pack.default_ticks, backend_case.slow() ? kEvery : 2 * kEvery);
+}
+
+class GoldenOnGl : public testing::TestWithParam<std::tuple<std::string, test::BackendCase>> {
+ protected:
+  void SetUp() override {
+    if (const std::string& lack = test::lackOf(std::get<1>(GetParam())); !lack.empty()) GTEST_SKIP() << lack;
+  }
+};
+
+TEST_P(GoldenOnGl, TheFirstHashesAreTheCommittedOnes) {
+  const auto& [name, backend_case] = GetParam();
+  const GoldenScene scene = load(name);
+  const BaseTerrain base(scene.pack);
+  const Script script(base);
+  Simulation simulation(base, scene.id, test::borrowBackend(backend_case));
+  const std::int32_t ticks = ticksOnGl(scene.pack, backend_case);
+  for (std::int32_t tick = 1; tick <= ticks; ++tick) {
+    const auto result = simulation.step(script.poses(tick));
+    ASSERT_TRUE(result) << result.error();
+    ASSERT_EQ(result->ledger.error(), 0) << "tick " << tick;
+    if (tick % kEvery == 0 || tick == scene.pack.default_ticks) {
+      ASSERT_EQ(hexText(result->update.state_hash), scene.hashes.at(tick)) << "tick " << tick;
+    }
+  }
+  EXPECT_TRUE(recount(simulation.state()));
+}
+
+std::string sceneOnCase(const testing::TestParamInfo<GoldenOnGl::ParamType>& info) {
+  return std::get<0>(info.param) + "On" + std::get<1>(info.param).name;
+}
 
 TEST_P(Golden, HashesAreTheCommittedOnesAndTheGroundGoesToSleep) {
   const GoldenScene scene = load(GetParam());
@@ -103,6 +145,10 @@ TEST_P(Golden, NeitherThreadsNorKernelsNorSkippingShow) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenOnGl,
+                         testing::Combine(testing::ValuesIn(sceneNames()), testing::ValuesIn(schedules())),
+                         sceneOnCase);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(GoldenOnGl);
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(sceneNames()),
                          [](const auto& scene) { return scene.param; });
 

@@ -13,6 +13,8 @@ namespace {
 constexpr int kNone = rules::kNoUnderside;
 constexpr int kDeep = -1000000;
 
+class PenetrationStage : public OnEveryBackend {};
+
 struct Case {
   int height, bedrock, underside, obstacle_threshold, expected;
 };
@@ -35,42 +37,46 @@ TEST(Penetration, ClassifiesACellByTheGapAboveIt) {
         << c.height << ", " << c.bedrock << ", " << c.underside << ", " << c.obstacle_threshold;
 }
 
-TEST(Penetration, FiveByFiveCellsUnderASlantedBody) {
+TEST_P(PenetrationStage, FiveByFiveCellsUnderASlantedBody) {
   ScenePack pack = groundPack(5, 5, std::vector<std::int32_t>(25, 1000), 600);
   pack.obstacle_threshold_q = 50;
   const World world(std::move(pack));
-  StageRig rig(world);
-  rig.setUnderside({kNone, kNone, kNone, kNone, kNone,  //
-                    kNone, 900,   800,   700,   kNone,  //
-                    kNone, 1000,  500,   300,   kNone,  //
-                    kNone, 1050,  1051,  kDeep, kNone,  //
-                    kNone, kNone, kNone, kNone, kNone});
-  runPenetration(rig.context, rig.domain);
-  EXPECT_EQ(rig.domain.overlap, (std::vector<std::int32_t>{-1, -1,  -1,  -1,  -1,  //
-                                                           -1, 100, 200, 300, -1,  //
-                                                           -1, 0,   500, 600, -1,  //
-                                                           -1, 0,   -1,  600, -1,  //
-                                                           -1, -1,  -1,  -1,  -1}));
-  EXPECT_EQ(rig.domain.penetrating_in_row, (std::vector<int>{0, 3, 2, 1, 0}));
-  EXPECT_EQ(rig.domain.penetrating_count, 6);
+  const auto rig = makeStageRig(GetParam(), world);
+  rig->setUnderside({kNone, kNone, kNone, kNone, kNone,  //
+                     kNone, 900,   800,   700,   kNone,  //
+                     kNone, 1000,  500,   300,   kNone,  //
+                     kNone, 1050,  1051,  kDeep, kNone,  //
+                     kNone, kNone, kNone, kNone, kNone});
+  rig->penetration();
+  EXPECT_EQ(rig->overlap(), (std::vector<std::int32_t>{-1, -1,  -1,  -1,  -1,  //
+                                                       -1, 100, 200, 300, -1,  //
+                                                       -1, 0,   500, 600, -1,  //
+                                                       -1, 0,   -1,  600, -1,  //
+                                                       -1, -1,  -1,  -1,  -1}));
+  EXPECT_EQ(rig->penetratingCount(), 6);
+  if (const auto* native = dynamic_cast<const NativeStageRig*>(rig.get())) {
+    EXPECT_EQ(native->domain.penetrating_in_row, (std::vector<int>{0, 3, 2, 1, 0}));
+  }
 }
 
-TEST(Penetration, EqualsTheOracleOnWorldsOfAnySize) {
+TEST_P(PenetrationStage, EqualsTheOracleOnWorldsOfAnySize) {
   std::mt19937 engine(21);
   for (const auto& [columns, rows] : {std::pair{77, 131}, {1, 200}, {65, 1}, {130, 40}}) {
     ScenePack pack = noisePack(columns, rows, engine(), -2000, 2000, 900);
     pack.obstacle_threshold_q = 100;
     const World world(std::move(pack));
-    StageRig rig(world, 2);
+    const auto rig = makeStageRig(GetParam(), world);
     std::vector<std::int32_t> underside;
     for (int i = 0; i < columns * rows; ++i)
       underside.push_back(engine() % 3 == 0 ? kNone : int(engine() % 6000) - 3000);
-    rig.setUnderside(underside);
-    runPenetration(rig.context, rig.domain);
-    const DenseWorld dense = denseCopy(rig);
-    EXPECT_EQ(rig.domain.overlap, insideCells(dense, oracleOverlap(dense, 100))) << columns << " x " << rows;
+    rig->setUnderside(underside);
+    rig->penetration();
+    const DenseWorld dense = denseCopy(*rig);
+    EXPECT_EQ(rig->overlap(), insideCells(dense, oracleOverlap(dense, 100))) << columns << " x " << rows;
   }
 }
+
+SPOOR_ON_EVERY_BACKEND(PenetrationStage);
 
 }  // namespace
 }  // namespace spoor::test

@@ -139,6 +139,10 @@ Simulation World::simulate(const NativeOptions& options) const {
   return Simulation(base, id, makeNativeBackend(options));
 }
 
+Simulation World::simulateOn(const BackendCase& backend_case) const {
+  return Simulation(base, id, borrowBackend(backend_case));
+}
+
 RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   std::mt19937 engine(seed);
   const auto pick = [&engine](int low, int high) { return low + int(engine() % std::uint32_t(high - low + 1)); };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/sim/simulation.h"
+#include "tests/backends.h"
 #include "tests/oracle.h"
 
 namespace spoor::test {
@@ -44,6 +45,7 @@ class World {
   BaseTerrain base{pack};
   PackId id;
   Simulation simulate(const NativeOptions& options = {.thread_count = 1}) const;
+  Simulation simulateOn(const BackendCase& backend_case) const;
 };
 
 /// A small world of a seed: its size is a multiple of nothing, its ground, thresholds and bodies are anything, and the

@@ -89,14 +89,21 @@ class Session : public ::testing::Test {
   }
 };
 
-TEST_F(Session, AReplayOfTheFileHasTheRecordedHashesAndLedgers) {
+class SessionReplay : public Session, public ::testing::WithParamInterface<BackendCase> {
+ protected:
+  void SetUp() override {
+    if (const std::string& lack = lackOf(GetParam()); !lack.empty()) GTEST_SKIP() << lack;
+  }
+};
+
+TEST_P(SessionReplay, OfTheFileHasTheRecordedHashesAndLedgers) {
   const auto hashes = record();
   auto reader = SessionReader::open(path_.string());
   ASSERT_TRUE(reader) << reader.error();
   EXPECT_EQ((*reader)->id(), world_.id);
   EXPECT_EQ(encodePack((*reader)->pack()), encodePack(world_.pack));
   const BaseTerrain base((*reader)->pack());
-  Simulation replay(base, (*reader)->id(), makeNativeBackend({.thread_count = 2}));
+  Simulation replay(base, (*reader)->id(), borrowBackend(GetParam()));
   for (int tick = 1; tick <= kTicks; ++tick) {
     const auto record = (*reader)->next();
     ASSERT_TRUE(record) << record.error();
@@ -113,6 +120,8 @@ TEST_F(Session, AReplayOfTheFileHasTheRecordedHashesAndLedgers) {
   EXPECT_FALSE(end->has_value());
   EXPECT_FALSE((*reader)->truncated());
 }
+
+SPOOR_ON_EVERY_BACKEND(SessionReplay);
 
 TEST_F(Session, AFileCutOffAnywhereGivesItsWholeTicks) {
   record();

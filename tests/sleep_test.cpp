@@ -9,6 +9,8 @@
 namespace spoor::test {
 namespace {
 
+class Sleep : public OnEveryBackend {};
+
 /// Ticks until nothing is active any more, the bodies standing where they are; -1 if that takes over `limit`.
 int ticksToSleep(Simulation& simulation, int limit) {
   for (int tick = 0; tick <= limit; ++tick) {
@@ -38,10 +40,10 @@ void wakeColumn(Simulation& simulation) {
   ASSERT_TRUE(simulation.step(std::vector{moved(poses[0], 0, 0, 1 << 28)}));
 }
 
-TEST(Sleep, AColumnOfSandComesToRestWithEverySlopeAtMostItsThreshold) {
+TEST_P(Sleep, AColumnOfSandComesToRestWithEverySlopeAtMostItsThreshold) {
   for (const int threshold : {1, 7, 700}) {
     const World world(columnPack(90, 60000 * std::min(threshold, 70) / 70 + 500, threshold));
-    Simulation simulation = world.simulate();
+    Simulation simulation = world.simulateOn(GetParam());
     wakeColumn(simulation);
     const int ticks = ticksToSleep(simulation, 2000);
     ASSERT_GE(ticks, 0) << "threshold " << threshold;
@@ -49,9 +51,9 @@ TEST(Sleep, AColumnOfSandComesToRestWithEverySlopeAtMostItsThreshold) {
   }
 }
 
-TEST(Sleep, APileIsRoundAndCentred) {
+TEST_P(Sleep, APileIsRoundAndCentred) {
   const World world(columnPack(64, 4000000, 700));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   wakeColumn(simulation);
   ASSERT_GE(ticksToSleep(simulation, 3000), 0);
   // Radius along the axes and the diagonals, and the first moment.
@@ -81,7 +83,7 @@ struct Scene {
   int running_ticks;
 };
 
-std::vector<Scene> scenes() {
+std::vector<Scene> allScenes() {
   std::vector<Scene> result;
   {
     Scene scene{"a box that ploughs", noisePack(200, 90, 3, -900, 900, 20000), {{900, 0, 0, 0}}, 100};
@@ -115,11 +117,22 @@ std::vector<Scene> scenes() {
   return result;
 }
 
-TEST(Sleep, EverySceneSleepsWithin300TicksOnceItsBodiesStand) {
-  for (Scene& scene : scenes()) {
+/// All scenes; in a slow case every other one, for a while.
+std::vector<Scene> scenesFor(const BackendCase& backend_case) {
+  std::vector<Scene> scenes = allScenes(), chosen;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (backend_case.slow() && (i % 2 == 1) != backend_case.reversed) continue;
+    if (backend_case.slow()) scenes[i].running_ticks = 12;
+    chosen.push_back(std::move(scenes[i]));
+  }
+  return chosen;
+}
+
+TEST_P(Sleep, EverySceneSleepsWithin300TicksOnceItsBodiesStand) {
+  for (Scene& scene : scenesFor(GetParam())) {
     SCOPED_TRACE(scene.name);
     const World world(std::move(scene.pack));
-    Simulation simulation = world.simulate();
+    Simulation simulation = world.simulateOn(GetParam());
     for (int tick = 0; tick < scene.running_ticks; ++tick) {
       std::vector<Pose> poses = simulation.state().poses;
       for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -142,12 +155,12 @@ TEST(Sleep, EverySceneSleepsWithin300TicksOnceItsBodiesStand) {
   }
 }
 
-TEST(Sleep, WhatSleepsWouldNotMoveIfItWereAwake) {
-  for (Scene& scene : scenes()) {
+TEST_P(Sleep, WhatSleepsWouldNotMoveIfItWereAwake) {
+  for (Scene& scene : scenesFor(GetParam())) {
     SCOPED_TRACE(scene.name);
     const World world(std::move(scene.pack));
-    Simulation simulation = world.simulate();
-    for (int tick = 0; tick < 20; ++tick) {
+    Simulation simulation = world.simulateOn(GetParam());
+    for (int tick = 0; tick < (GetParam().slow() ? 8 : 20); ++tick) {
       std::vector<Pose> poses = simulation.state().poses;
       for (std::size_t i = 0; i < poses.size(); ++i)
         poses[i] = moved(poses[i], scene.speed[i][0], scene.speed[i][1], scene.speed[i][2]);
@@ -157,7 +170,7 @@ TEST(Sleep, WhatSleepsWouldNotMoveIfItWereAwake) {
     auto state = decodeSnapshot(encodeSnapshot(simulation.state(), world.base), world.id, world.base);
     ASSERT_TRUE(state);
     for (Tile* tile : state->tiles.sorted()) state->tiles.setWake(*tile, kWakeSelf);
-    Simulation awake(world.base, std::move(*state), makeNativeBackend({.thread_count = 1}));
+    Simulation awake(world.base, std::move(*state), borrowBackend(GetParam()));
     const auto result = awake.step(simulation.state().poses);
     ASSERT_TRUE(result);
     EXPECT_GE(result->effect.active_cells, std::int64_t(simulation.state().tiles.size()) * rules::kTileCells);
@@ -167,11 +180,11 @@ TEST(Sleep, WhatSleepsWouldNotMoveIfItWereAwake) {
   }
 }
 
-TEST(Sleep, AStandingBodyPressesOnlyInTheFirstTick) {
+TEST_P(Sleep, AStandingBodyPressesOnlyInTheFirstTick) {
   ScenePack pack = flatPack(60, 60);
   addBody(pack, boxMesh(4000, 4000, 4000), 30000, 30000, 500);
   const World world(std::move(pack));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   const auto first = simulation.step(simulation.state().poses);
   ASSERT_TRUE(first);
   EXPECT_GT(first->effect.penetrating_cells, 0);
@@ -180,11 +193,11 @@ TEST(Sleep, AStandingBodyPressesOnlyInTheFirstTick) {
   EXPECT_EQ(heightOf(simulation.state(), 30, 30), -500);
 }
 
-TEST(Sleep, SoilThatABodyHeldUpFallsOnceItIsGone) {
+TEST_P(Sleep, SoilThatABodyHeldUpFallsOnceItIsGone) {
   ScenePack pack = flatPack(60, 60);
   addBody(pack, boxMesh(8000, 8000, 4000), 30000, 30000, 6000);
   const World world(std::move(pack));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   ASSERT_GE(ticksToSleep(simulation, 300), 0);
   EXPECT_EQ(heightOf(simulation.state(), 30, 30), -6000) << "the body keeps its hole open";
   ASSERT_TRUE(simulation.step(std::vector{moved(simulation.state().poses[0], 0, 0, 20000)}));
@@ -192,6 +205,8 @@ TEST(Sleep, SoilThatABodyHeldUpFallsOnceItIsGone) {
   EXPECT_GT(heightOf(simulation.state(), 30, 30), -6000);
   EXPECT_EQ(steepestExcess(world.pack, simulation.state().tiles), 0);
 }
+
+SPOOR_ON_EVERY_BACKEND(Sleep);
 
 }  // namespace
 }  // namespace spoor::test

@@ -1,86 +1,110 @@
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "shared/sim/native_stages.h"
+#include "tests/backends.h"
 #include "tests/scenes.h"
 
 namespace spoor::test {
 
-/// Native stages on a whole small world at once: every tile active, one domain over all cells, no body yet.
-struct StageRig {
-  explicit StageRig(const World& made_world, int thread_count = 1) : world(made_world), pool(thread_count) {
-    const TileCoordinate extent = tileExtent(world.pack);
-    for (int y = 0; y < extent.y; ++y)
-      for (int x = 0; x < extent.x; ++x) plan.active.push_back({x, y});
-    plan.tick = 1;
-    area.gather(plan, world.base, state, pool);
-    area.clearUnderside(world.pack, pool);
-    runDepth(context, {});
-    domain.reset({0, 0, world.pack.width_cells, world.pack.height_cells}, area);
-  }
+using Cells = std::vector<std::int32_t>;
+
+/// The stages one by one on a whole small world: every tile active, one domain over all cells, no body yet. Planes are
+/// given and taken as the world's cells, row by row.
+class StageRig {
+ public:
+  virtual ~StageRig() = default;
   StageRig(const StageRig&) = delete;
 
-  /// Draws bodies into the undersides, over all cells.
-  void press(const std::vector<PlacedBody>& bodies) {
-    SubStep sub_step{bodies, {{domain.box, {}}}, 0};
-    for (std::size_t i = 0; i < bodies.size(); ++i) sub_step.domains[0].bodies.push_back(int(i));
-    runDepth(context, sub_step);
-  }
+  Cells height() const { return insideOf(tileHeights()); }
+  Cells underside() const { return insideOf(tileUndersides()); }
+  void setHeight(const Cells& cells) { putTileHeights(withInside(tileHeights(), cells)); }
+  /// As bodies would have left them.
+  void setUnderside(const Cells& cells) { putTileUndersides(withInside(tileUndersides(), cells)); }
+  virtual Cells overlap() const = 0;               // after penetration
+  virtual int penetratingCount() const = 0;        // after penetration
+  virtual Cells target() const = 0;                // after nearest; of penetrating cells
+  virtual void setTarget(const Cells& cells) = 0;  // in place of nearest
+  /// Active tiles' heights, kTileCells of each tile in the plan's order, cells outside the world included.
+  virtual Cells tileHeights() const = 0;
+  virtual Cells tileUndersides() const = 0;
+  const std::vector<TileCoordinate>& active() const { return plan_.active; }
+  const World& world() const { return world_; }
 
-  /// One plane of the area, the world's cells row by row.
-  std::vector<std::int32_t> cells(const std::vector<std::int32_t>& plane) const {
-    std::vector<std::int32_t> result;
-    for (int y = 0; y < domain.rows(); ++y)
-      for (int x = 0; x < domain.width(); ++x) result.push_back(plane[area.offsetAt(x, y)]);
-    return result;
-  }
-  void set(std::vector<std::int32_t>& plane, const std::vector<std::int32_t>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      plane[area.offsetAt(int(i) % domain.width(), int(i) / domain.width())] = values[i];
-  }
-  /// Sets the undersides of all cells, as bodies would.
-  void setUnderside(const std::vector<std::int32_t>& values) {
-    set(area.underside, values);
-    std::ranges::fill(area.lowest_underside, -rules::kHeightLimit);  // anything may limit: the careful path everywhere
-  }
+  /// Draws these bodies, and no others, into the undersides, over all cells.
+  virtual void press(const std::vector<PlacedBody>& bodies) = 0;
+  virtual void penetration() = 0;
+  virtual void nearest() = 0;
+  virtual void displace() = 0;
+  /// Sweeps, the first of them being number `first_sweep` since heights or undersides were set.
+  virtual void relax(int first_sweep, int sweep_count) = 0;
 
-  /// Penetration, nearest, displace.
-  void displace() {
-    runPenetration(context, domain);
-    if (domain.penetrating_count == 0) return;
-    runNearest(context, domain);
-    runDisplace(context, domain, 0);
-  }
+  /// Penetration, nearest and displace.
+  void moveSoil();
 
-  const World& world;
-  WorldState state;
-  ThreadPool pool;
-  WorkArea area;
-  NativeContext context{world.pack, kernels(), pool, area};
-  TickPlan plan;
-  DomainWork domain;
+ protected:
+  /// @param active  in (y, x) order; empty: all tiles. With others than all there is no domain: only relax() may run
+  StageRig(const World& world, std::vector<TileCoordinate> active);
+  virtual void putTileHeights(const Cells& cells) = 0;
+  virtual void putTileUndersides(const Cells& cells) = 0;
+  bool hasDomain() const { return has_domain_; }
+  CellBox domainBox() const { return {0, 0, world_.pack.width_cells, world_.pack.height_cells}; }
+
+  const World& world_;
+  TickPlan plan_;
+
+ private:
+  Cells insideOf(const Cells& tiles) const;
+  Cells withInside(Cells tiles, const Cells& cells) const;
+  std::ptrdiff_t tileIndex(int x, int y) const;  // of a cell; -1: not active
+
+  bool has_domain_;
 };
 
+/// The native stages; public, for tests of what only they have.
+class NativeStageRig final : public StageRig {
+ public:
+  explicit NativeStageRig(const World& world, int thread_count = 1, const Kernels& set = kernels(),
+                          bool skip_settled = true, std::vector<TileCoordinate> active = {});
+
+  Cells overlap() const override { return domain.overlap; }
+  int penetratingCount() const override { return domain.penetrating_count; }
+  Cells target() const override { return domain.target; }
+  void setTarget(const Cells& cells) override;
+  Cells tileHeights() const override { return tilesOf(area.height); }
+  Cells tileUndersides() const override { return tilesOf(area.underside); }
+  void press(const std::vector<PlacedBody>& bodies) override;
+  void penetration() override { runPenetration(context, domain); }
+  void nearest() override { runNearest(context, domain); }
+  void displace() override { runDisplace(context, domain, 0); }
+  void relax(int first_sweep, int sweep_count) override { runRelax(context, first_sweep, sweep_count, skip_settled_); }
+
+  ThreadPool pool;
+  ActiveTiles tiles;
+  WorkArea area;
+  NativeContext context;
+  DomainWork domain;
+
+ private:
+  void putTileHeights(const Cells& cells) override { putTiles(area.height, cells); }
+  void putTileUndersides(const Cells& cells) override;
+  Cells tilesOf(const std::vector<std::int32_t>& plane) const;
+  void putTiles(std::vector<std::int32_t>& plane, const Cells& cells);
+
+  bool skip_settled_;
+};
+
+/// The rig of a case's backend. Throws std::runtime_error where it cannot be made.
+std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const World& world,
+                                       std::vector<TileCoordinate> active = {});
+
 /// A dense world with the heights and undersides that a rig holds, all cells active.
-inline DenseWorld denseCopy(const StageRig& rig) {
-  DenseWorld dense(rig.world.base);
-  for (int y = 0; y < dense.inside_rows; ++y)
-    for (int x = 0; x < dense.inside_columns; ++x) {
-      dense.height[dense.at(x, y)] = rig.area.height[rig.area.offsetAt(x, y)];
-      dense.underside[dense.at(x, y)] = rig.area.underside[rig.area.offsetAt(x, y)];
-    }
-  std::ranges::fill(dense.active, std::uint8_t(1));
-  return dense;
-}
+DenseWorld denseCopy(const StageRig& rig);
 
 /// The world's cells of one of its planes.
-inline std::vector<std::int32_t> insideCells(const DenseWorld& dense, const std::vector<std::int32_t>& plane) {
-  std::vector<std::int32_t> result;
-  for (int y = 0; y < dense.inside_rows; ++y)
-    for (int x = 0; x < dense.inside_columns; ++x) result.push_back(plane[dense.at(x, y)]);
-  return result;
-}
+Cells insideCells(const DenseWorld& dense, const std::vector<std::int32_t>& plane);
 
 }  // namespace spoor::test

@@ -1,4 +1,4 @@
-// Whole ticks: the native backend against the oracle, on random worlds and bodies.
+// Whole ticks: every backend against the oracle, on random worlds and bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +7,6 @@
 
 namespace spoor::test {
 namespace {
-
-constexpr int kTicks = 20;
 
 /// No soil under bedrock; nothing above a body's underside but what found no room.
 void checkCells(const World& world, const Oracle& oracle) {
@@ -22,11 +20,11 @@ void checkCells(const World& world, const Oracle& oracle) {
   }
 }
 
-void checkWorld(std::uint32_t seed) {
-  RandomWorld random = randomWorld(seed, kTicks);
+void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
+  RandomWorld random = randomWorld(seed, backend_case.slow() ? 12 : 20);
   SCOPED_TRACE(random.description);
   const World world(std::move(random.pack));
-  Simulation simulation = world.simulate({.thread_count = 1 + int(seed % 3)});
+  Simulation simulation = world.simulateOn(backend_case);
   Oracle oracle(world.base, world.id);
   for (const auto& poses : random.ticks) {
     const auto result = simulation.step(poses);
@@ -40,15 +38,41 @@ void checkWorld(std::uint32_t seed) {
   EXPECT_TRUE(recount(simulation.state()));
 }
 
-class RandomWorlds : public ::testing::TestWithParam<std::uint32_t> {};
+/// Twenty worlds on one backend; no two batches have a seed in common.
+struct Batch {
+  BackendCase backend_case;
+  int number = 0;           // of the backend's batches
+  std::uint32_t seeds = 0;  // the first of its seeds
+};
+void PrintTo(const Batch& batch, std::ostream* out) { *out << batch.backend_case.name << ", seed " << batch.seeds; }
 
-TEST_P(RandomWorlds, NativeEqualsTheOracleAndKeepsEveryGrain) {
-  for (std::uint32_t i = 0; i < 20 && !HasFatalFailure(); ++i) checkWorld(GetParam() * 20 + i);
+constexpr std::uint32_t kWorldsPerBatch = 20;
+
+std::vector<Batch> batches() {
+  std::vector<Batch> result;
+  for (const BackendCase& backend_case : backendCases())
+    for (int i = 0; i < (backend_case.gl ? 2 : 5); ++i)
+      result.push_back({backend_case, i, std::uint32_t(result.size()) * kWorldsPerBatch});
+  return result;
 }
 
+class RandomWorlds : public ::testing::TestWithParam<Batch> {
+ protected:
+  void SetUp() override {
+    if (const std::string& lack = lackOf(GetParam().backend_case); !lack.empty()) GTEST_SKIP() << lack;
+  }
+};
+
+TEST_P(RandomWorlds, EqualTheOracleAndKeepEveryGrain) {
+  for (std::uint32_t i = 0; i < kWorldsPerBatch && !HasFatalFailure(); ++i)
+    checkWorld(GetParam().backend_case, GetParam().seeds + i);
+}
+
+class WholeTick : public OnEveryBackend {};
+
 /// Runs poses on both and compares after every tick.
-void checkTicks(const World& world, const std::vector<std::vector<Pose>>& ticks) {
-  Simulation simulation = world.simulate();
+void checkTicks(const BackendCase& backend_case, const World& world, const std::vector<std::vector<Pose>>& ticks) {
+  Simulation simulation = world.simulateOn(backend_case);
   Oracle oracle(world.base, world.id);
   for (const auto& poses : ticks) {
     ASSERT_TRUE(simulation.step(poses));
@@ -58,7 +82,7 @@ void checkTicks(const World& world, const std::vector<std::vector<Pose>>& ticks)
   }
 }
 
-TEST(Tick, AJoinedDomainReachesTilesThatNoBodyDoes) {
+TEST_P(WholeTick, AJoinedDomainReachesTilesThatNoBodyDoes) {
   // Two bars that form an L over three tiles: the box of both reaches into the fourth, in its open corner.
   ScenePack pack = flatPack(200, 200);
   addBody(pack, boxMesh(80000, 4000, 3000), 60000, 10000, 500);
@@ -73,10 +97,10 @@ TEST(Tick, AJoinedDomainReachesTilesThatNoBodyDoes) {
     poses[1] = moved(poses[1], 200, 700);
     ticks.push_back(poses);
   }
-  checkTicks(world, ticks);
+  checkTicks(GetParam(), world, ticks);
 }
 
-TEST(Tick, ABodyOfThreeTilesThatLeavesTheWorld) {
+TEST_P(WholeTick, ABodyOfThreeTilesThatLeavesTheWorld) {
   ScenePack pack = noisePack(210, 75, 5, -800, 800, 3000);
   addBody(pack, archMesh(190000, 20000, 20000), 105000, 40000, 700);
   const World world(std::move(pack));
@@ -86,29 +110,29 @@ TEST(Tick, ABodyOfThreeTilesThatLeavesTheWorld) {
     poses[0] = moved(poses[0], 0, 9000, 0, 100);
     ticks.push_back(poses);
   }
-  checkTicks(world, ticks);
+  checkTicks(GetParam(), world, ticks);
 }
 
-TEST(Tick, ABodyThatCoversTheWholeWorldLeavesTheSoilNowhereToGo) {
+TEST_P(WholeTick, ABodyThatCoversTheWholeWorldLeavesTheSoilNowhereToGo) {
   ScenePack pack = flatPack(20, 15);
   addBody(pack, boxMesh(60000, 60000, 3000), 10000, 7000, 500);
   const World world(std::move(pack));
   const std::vector<Pose> poses = initialState(world.id, world.base).poses;
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   const auto result = simulation.step(poses);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->effect.penetrating_cells, 300);
   EXPECT_EQ(simulation.state().ledger.error(), 0);
   for (int x = 0; x < 20; ++x) EXPECT_EQ(heightOf(simulation.state(), x, 7), 0);
-  checkTicks(world, {poses, poses});
+  checkTicks(GetParam(), world, {poses, poses});
 }
 
-TEST(Tick, AFastBodyLeavesATrailWithoutGaps) {
+TEST_P(WholeTick, AFastBodyLeavesATrailWithoutGaps) {
   ScenePack pack = flatPack(120, 40);
   addBody(pack, boxMesh(3000, 3000, 3000), 10000, 20000, 600);
   pack.slope_threshold_q = pack.diagonal_threshold_q = 5000;  // the trail keeps its walls
   const World world(std::move(pack));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   ASSERT_TRUE(simulation.step(simulation.state().poses));
   for (int tick = 0; tick < 3; ++tick) {
     const auto result = simulation.step(std::vector{moved(simulation.state().poses[0], 30000, 0)});
@@ -121,11 +145,11 @@ TEST(Tick, AFastBodyLeavesATrailWithoutGaps) {
   EXPECT_TRUE(result->too_fast) << "33 cells in a tick are announced";
 }
 
-TEST(Tick, ABladeThinnerThanACellPressesWhereverItIs) {
+TEST_P(WholeTick, ABladeThinnerThanACellPressesWhereverItIs) {
   ScenePack pack = flatPack(60, 40);
   addBody(pack, bladeMesh(12000, 4000), 10000, 20000, 500);
   const World world(std::move(pack));
-  Simulation simulation = world.simulate();
+  Simulation simulation = world.simulateOn(GetParam());
   for (int tick = 0; tick < 30; ++tick) {
     ASSERT_TRUE(simulation.step(std::vector{moved(simulation.state().poses[0], 700, 0)}));
     const int x = simulation.state().poses[0].x_q / 1000;
@@ -134,7 +158,12 @@ TEST(Tick, ABladeThinnerThanACellPressesWhereverItIs) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomWorlds, ::testing::Range(0u, 10u));
+std::string batchName(const ::testing::TestParamInfo<Batch>& info) {
+  return info.param.backend_case.name + "Batch" + std::to_string(info.param.number);
+}
+
+INSTANTIATE_TEST_SUITE_P(On, RandomWorlds, ::testing::ValuesIn(batches()), batchName);
+SPOOR_ON_EVERY_BACKEND(WholeTick);
 
 }  // namespace
 }  // namespace spoor::test

@@ -1,0 +1,146 @@
+#include "tests/stage_rig.h"
+
+#include <algorithm>
+
+#include "shared/base/assert.h"
+#ifdef SPOOR_WITH_GL
+#include "tests/gl_stage_rig.h"
+#endif
+
+namespace spoor::test {
+namespace {
+
+constexpr int kSize = rules::kTileSize;
+
+std::vector<TileCoordinate> allTiles(const ScenePack& pack) {
+  std::vector<TileCoordinate> tiles;
+  const TileCoordinate extent = tileExtent(pack);
+  for (int y = 0; y < extent.y; ++y)
+    for (int x = 0; x < extent.x; ++x) tiles.push_back({x, y});
+  return tiles;
+}
+
+}  // namespace
+
+StageRig::StageRig(const World& world, std::vector<TileCoordinate> active) : world_(world) {
+  plan_.tick = 1;
+  plan_.active = active.empty() ? allTiles(world.pack) : std::move(active);
+  has_domain_ = plan_.active == allTiles(world.pack);
+}
+
+void StageRig::moveSoil() {
+  penetration();
+  if (penetratingCount() == 0) return;
+  nearest();
+  displace();
+}
+
+std::ptrdiff_t StageRig::tileIndex(int x, int y) const {
+  const TileCoordinate at{x / kSize, y / kSize};
+  const auto found = std::ranges::lower_bound(plan_.active, at);
+  return found == plan_.active.end() || *found != at ? -1 : found - plan_.active.begin();
+}
+
+Cells StageRig::insideOf(const Cells& tiles) const {
+  Cells cells;
+  for (int y = 0; y < world_.pack.height_cells; ++y)
+    for (int x = 0; x < world_.pack.width_cells; ++x) {
+      const std::ptrdiff_t tile = tileIndex(x, y);
+      SPOOR_ASSERT(tile >= 0);
+      cells.push_back(tiles[std::size_t(tile * rules::kTileCells + y % kSize * kSize + x % kSize)]);
+    }
+  return cells;
+}
+
+Cells StageRig::withInside(Cells tiles, const Cells& cells) const {
+  const int width = world_.pack.width_cells;
+  SPOOR_ASSERT(cells.size() == std::size_t(width) * std::size_t(world_.pack.height_cells));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const int x = int(i) % width, y = int(i) / width;
+    const std::ptrdiff_t tile = tileIndex(x, y);
+    SPOOR_ASSERT(tile >= 0);
+    tiles[std::size_t(tile * rules::kTileCells + y % kSize * kSize + x % kSize)] = cells[i];
+  }
+  return tiles;
+}
+
+NativeStageRig::NativeStageRig(const World& made_world, int thread_count, const Kernels& set, bool skip_settled,
+                               std::vector<TileCoordinate> active)
+    : StageRig(made_world, std::move(active)),
+      pool(thread_count),
+      tiles(takeTiles(plan_, made_world.base, WorldState{}, pool)),
+      context{made_world.pack, set, pool, area},
+      skip_settled_(skip_settled) {
+  area.gather(tiles.tiles, pool);
+  area.clearUnderside(made_world.pack, pool);
+  runDepth(context, {});
+  if (hasDomain()) domain.reset(domainBox(), area);
+}
+
+void NativeStageRig::press(const std::vector<PlacedBody>& bodies) {
+  area.clearUnderside(world_.pack, pool);
+  SubStep sub_step{bodies, {{domain.box, {}}}, 0};
+  for (std::size_t i = 0; i < bodies.size(); ++i) sub_step.domains[0].bodies.push_back(int(i));
+  runDepth(context, sub_step);
+}
+
+void NativeStageRig::setTarget(const Cells& cells) {
+  domain.target = cells;
+  domain.receives.assign(std::size_t(domain.rows()), 0);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (domain.overlap[i] > 0 && cells[i] != rules::kNoTarget)
+      domain.receives[std::size_t(cells[i] / domain.width())] = 1;
+}
+
+void NativeStageRig::putTileUndersides(const Cells& cells) {
+  putTiles(area.underside, cells);
+  std::ranges::fill(area.lowest_underside, -rules::kHeightLimit);  // anything may limit: the careful path everywhere
+}
+
+Cells NativeStageRig::tilesOf(const std::vector<std::int32_t>& plane) const {
+  Cells cells;
+  for (const TileCoordinate tile : plan_.active)
+    for (int row = 0; row < kSize; ++row) {
+      const auto first = plane.begin() + std::ptrdiff_t(area.offsetAt(tile.x * kSize, tile.y * kSize + row));
+      cells.insert(cells.end(), first, first + kSize);
+    }
+  return cells;
+}
+
+void NativeStageRig::putTiles(std::vector<std::int32_t>& plane, const Cells& cells) {
+  auto from = cells.begin();
+  for (const TileCoordinate tile : plan_.active)
+    for (int row = 0; row < kSize; ++row, from += kSize)
+      std::copy_n(from, kSize, plane.begin() + std::ptrdiff_t(area.offsetAt(tile.x * kSize, tile.y * kSize + row)));
+}
+
+std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const World& world,
+                                       std::vector<TileCoordinate> active) {
+#ifdef SPOOR_WITH_GL
+  if (backend_case.gl) return makeGlStageRig(backend_case, world, std::move(active));
+#endif
+  const Kernels& set = backend_case.baseline_kernels ? *availableKernels().front() : kernels();
+  return std::make_unique<NativeStageRig>(world, backend_case.thread_count, set, backend_case.skip_settled,
+                                          std::move(active));
+}
+
+DenseWorld denseCopy(const StageRig& rig) {
+  DenseWorld dense(rig.world().base);
+  const Cells height = rig.height(), underside = rig.underside();
+  for (int y = 0; y < dense.inside_rows; ++y)
+    for (int x = 0; x < dense.inside_columns; ++x) {
+      dense.height[dense.at(x, y)] = height[std::size_t(y * dense.inside_columns + x)];
+      dense.underside[dense.at(x, y)] = underside[std::size_t(y * dense.inside_columns + x)];
+    }
+  std::ranges::fill(dense.active, std::uint8_t(1));
+  return dense;
+}
+
+Cells insideCells(const DenseWorld& dense, const std::vector<std::int32_t>& plane) {
+  Cells result;
+  for (int y = 0; y < dense.inside_rows; ++y)
+    for (int x = 0; x < dense.inside_columns; ++x) result.push_back(plane[dense.at(x, y)]);
+  return result;
+}
+
+}  // namespace spoor::test
