@@ -40,11 +40,11 @@ OWNERS = {
 # Rooms of the core, and what they may include besides the project and what they own: the C++ standard library and the C
 # library's option parser.
 CORE = ("shaders/rules", "shaders/sim", "shaders/host", "shared")
-STANDARD = re.compile(r"^([a-z_]+|getopt\.h)$")
+STANDARD = re.compile(r"^([a-z_]+|getopt\.h|dlfcn\.h)$")
 # Libraries a room's targets may be linked to.
 MAY_LINK = {
     "shared": {"spoor_flags", "spoor_shared", "Threads::Threads"},
-    "shaders": {"spoor_gl", "spoor_backends", "spoor_shared", "epoxy"},
+    "shaders": {"spoor_gl", "spoor_backends", "spoor_shared", "epoxy", "${CMAKE_DL_LIBS}"},
     "protocol": {"spoor_protocol", "spoor_shared", "enet", "flatbuffers", "zstd", "fmt", "spdlog"},
     "tests/bench": {"spoor-bench", "spoor_backends", "spoor_gl"},
 }

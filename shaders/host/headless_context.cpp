@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -134,8 +135,18 @@ struct Platform {
   EGLDisplay display;
 };
 
-/// Every display worth a try, in order. Errors: no EGL.
+/// Can a library be loaded? epoxy would end the program where it cannot.
+bool loads(const char* library) {
+  void* const handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+  if (handle != nullptr) dlclose(handle);
+  return handle != nullptr;
+}
+
+/// Every display worth a try, in order. Errors: no EGL, no OpenGL.
 Result<std::vector<Platform>> platforms() {
+  if (!loads("libEGL.so.1")) return Error{"headless OpenGL: EGL is missing (libEGL.so.1 cannot be loaded)"};
+  if (!loads("libOpenGL.so.0") && !loads("libGL.so.1"))
+    return Error{"headless OpenGL: OpenGL is missing (neither libOpenGL.so.0 nor libGL.so.1 can be loaded)"};
   const char* client_extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (client_extensions == nullptr) return Error{"headless OpenGL: EGL is missing or lists no client extensions"};
   std::vector<Platform> found;
