@@ -38,7 +38,7 @@ OWNERS = {
     "fmt": r"(protocol|server|client)/", "spdlog": r"(protocol|server|client)/",
 }
 # Rooms of the core, and what they may include besides the project and what they own: the C++ standard library and the C
-# library's option parser.
+# library's option parser and loader.
 CORE = ("shaders/rules", "shaders/sim", "shaders/host", "shared")
 STANDARD = re.compile(r"^([a-z_]+|getopt\.h|dlfcn\.h)$")
 # Libraries a room's targets may be linked to.
