@@ -85,8 +85,9 @@ TEST_P(GlBackends, WorldsOfAnyShape) {
     addBody(pack, tetrahedronMesh(9000), columns * 700, rows * 600, 2500);
     addBody(pack, bladeMesh(20000, 5000), columns * 500, rows * 500, 700);
     const World world(std::move(pack));
-    ASSERT_NO_FATAL_FAILURE(
-        compareWithNative(GetParam(), world, drive(initialPoses(world), 5, columns < 9 ? 90 : 1700, 1100, -30, 300)));
+    ASSERT_NO_FATAL_FAILURE(compareWithNative(
+        GetParam(), world,
+        drive(initialPoses(world), GetParam().slow() ? 2 : 5, columns < 9 ? 90 : 1700, 1100, -30, 300)));
   }
 }
 
@@ -239,8 +240,8 @@ TEST(GlDispatch, MoreGroupsThanARowOfADispatchHolds) {
 /// A car of one box that drives out along a row of tiles, and back.
 struct RoundTrip {
   RoundTrip() : world(makePack()) {
-    ticks = drive(initialPoses(world), 6, 30000, 200);
-    for (const auto& poses : drive(ticks.back(), 6, -30000, -150, -20)) ticks.push_back(poses);
+    ticks = drive(initialPoses(world), 3, 60000, 200);
+    for (const auto& poses : drive(ticks.back(), 3, -60000, -150, -20)) ticks.push_back(poses);
   }
   static ScenePack makePack() {
     ScenePack pack = noisePack(256, 60, 12, -2000, 2000, 20000);
@@ -285,7 +286,7 @@ TEST_P(GlBackends, ATickWithMoreTilesThanThePoolMakesItLarger) {
 
 TEST_P(GlBackends, APoolThatHoldsAllSaysNothing) {
   const RoundTrip trip;
-  const Ticks way_out(trip.ticks.begin(), trip.ticks.begin() + 4);
+  const Ticks way_out(trip.ticks.begin(), trip.ticks.begin() + 2);
   EXPECT_TRUE(runInPoolOf(GetParam(), 1 << 16, trip.world, way_out).empty());
 }
 

@@ -51,16 +51,15 @@ std::vector<std::string> sceneNames() {
 
 class Golden : public testing::TestWithParam<std::string> {};
 
-/// The two schedules of gl, and how many ticks of a scene they do: software renderers are slow.
+/// One case of each of the schedules of gl.
 std::vector<test::BackendCase> schedules() {
   std::vector<test::BackendCase> cases = test::glCases();
   std::erase_if(cases, [](const auto& backend_case) { return backend_case.group != 64; });
   return cases;
 }
 
-std::int32_t ticksOnGl(const ScenePack& pack, const test::BackendCase& backend_case) {
-  return std::min(pack.default_ticks, backend_case.slow() ? kEvery : 2 * kEvery);
-}
+/// A software renderer takes too long for all of a scene's ticks.
+constexpr std::int32_t kTicksOnGl = kEvery;
 
 class GoldenOnGl : public testing::TestWithParam<std::tuple<std::string, test::BackendCase>> {
  protected:
@@ -75,7 +74,7 @@ TEST_P(GoldenOnGl, TheFirstHashesAreTheCommittedOnes) {
   const BaseTerrain base(scene.pack);
   const Script script(base);
   Simulation simulation(base, scene.id, test::borrowBackend(backend_case));
-  const std::int32_t ticks = ticksOnGl(scene.pack, backend_case);
+  const std::int32_t ticks = std::min(scene.pack.default_ticks, kTicksOnGl);
   for (std::int32_t tick = 1; tick <= ticks; ++tick) {
     const auto result = simulation.step(script.poses(tick));
     ASSERT_TRUE(result) << result.error();

@@ -21,7 +21,7 @@ void checkCells(const World& world, const Oracle& oracle) {
 }
 
 void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
-  RandomWorld random = randomWorld(seed, backend_case.slow() ? 12 : 20);
+  RandomWorld random = randomWorld(seed, backend_case.slow() ? 8 : 20);
   SCOPED_TRACE(random.description);
   const World world(std::move(random.pack));
   Simulation simulation = world.simulateOn(backend_case);

@@ -28,7 +28,9 @@ struct Slab {
   int ceiling;
 };
 
-Slab slabAt(int tile, int slab) { return Slab(tile, slab, tile < 0 ? kNoUnderside : tile_states[tile].ceiling[slab]); }
+Slab slabAt(int tile, int slab) {
+  return Slab(tile, slab, SPOOR_BENEATH == 0 || tile < 0 ? kNoUnderside : tile_states[tile].ceiling[slab]);
+}
 
 /// Is there nothing in it that this step could move, as far as the slab itself goes?
 bool settled(Slab slab) {
