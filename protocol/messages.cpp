@@ -61,7 +61,13 @@ struct Builder {
     }
     const auto pose_vector = out.CreateVectorOfStructs(poses);
     const auto tiles = out.CreateVector(message.tiles);
-    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles));
+    flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> parameters;
+    if (message.parameters) {
+      ByteWriter writer;
+      putParameters(writer, *message.parameters);
+      parameters = out.CreateVector(writer.bytes);
+    }
+    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles, parameters));
   }
   void operator()(const Confirm& message) { out.Finish(wire::CreateConfirm(out, message.tick, message.state_hash)); }
   void operator()(const Goodbye& message) {
@@ -129,6 +135,12 @@ Result<Message> convert(const wire::TickUpdate& table) {
   if (table.tick() < 1) return invalid(kind, "tick below 1");
   if (table.poses()->size() > kPosesLimit) return invalid(kind, "too many poses");
   TickUpdate update{table.tick(), table.state_hash(), {}, {table.tiles()->begin(), table.tiles()->end()}};
+  if (const auto* bytes = table.parameters()) {
+    if (bytes->size() != kParametersBytes) return invalid(kind, "parameters of a wrong size");
+    ByteReader reader({bytes->data(), bytes->size()});
+    update.parameters = getParameters(reader);
+    if (!validateParameters(*update.parameters)) return invalid(kind, "a parameter out of range");
+  }
   update.poses.reserve(table.poses()->size());
   for (const wire::Pose* pose : *table.poses()) {
     update.poses.push_back(

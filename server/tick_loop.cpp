@@ -95,7 +95,8 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     result->effect.stage_ms[int(Stage::commands)] = outer[int(Stage::commands)];
     const std::uint64_t hash = result->update.state_hash;
     const auto publish_start = Clock::now();
-    if (writer != nullptr) writer->append({tick, result->update.poses, hash, result->ledger});
+    if (writer != nullptr)
+      writer->append({tick, result->update.poses, hash, result->ledger, result->update.parameters});
     if (host != nullptr) host->publish(std::move(result->update));
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
     if (result->too_fast && figures.too_fast_ticks == 0)

@@ -98,10 +98,10 @@ TEST_F(Codec, DifferencesOfEveryWidthSurvive) {
 TEST_F(Codec, TheBoxIsTheSmallestThatHoldsTheChange) {
   const auto tile = makeTile({0, 0}, world_.base, 4);
   const PlaneCells before = tile->height();
-  EXPECT_EQ(differenceOf(*tile, before, 2).width, 0);
+  EXPECT_EQ(differenceOf(*tile, before, nullptr, 2).width, 0);
   tile->height()[std::size_t(5 * 64 + 9)] += 3;
   tile->height()[std::size_t(7 * 64 + 8)] -= 1;
-  const TileChange change = differenceOf(*tile, before, 2);
+  const TileChange change = differenceOf(*tile, before, nullptr, 2);
   EXPECT_EQ(std::tuple(int(change.x), int(change.y), int(change.width), int(change.height)), std::tuple(8, 5, 2, 3));
   EXPECT_EQ(change.difference, (std::vector<std::int32_t>{0, 3, 0, 0, -1, 0}));
   EXPECT_EQ(std::pair(change.base_version, change.new_version), std::pair(2, 4));
@@ -114,7 +114,7 @@ TEST_F(Codec, HeightsBelowBedrockAndOutsideTheWorldAreRefusedWhateverTheirHash) 
     const PlaneCells before = tile->height();
     tile->height()[std::size_t(cell)] += change_q;
     tile->hash = tileHash(*tile);
-    const TileChange change = differenceOf(*tile, before, kDormantVersion);
+    const TileChange change = differenceOf(*tile, before, nullptr, kDormantVersion);
     EXPECT_FALSE(applyTiles(mirror_, world_.base, std::span(&change, 1))) << why;
     EXPECT_EQ(mirror_.tiles.size(), 0u);
   }

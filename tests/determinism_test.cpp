@@ -18,7 +18,7 @@ constexpr int kMeetingTicks = 24;
 RandomWorld meeting(int ticks = kMeetingTicks) {
   RandomWorld made;
   made.pack = noisePack(250, 170, 77, -5000, 5000, 4000);
-  made.pack.obstacle_threshold_q = 30;
+  made.pack.parameters.obstacle_threshold_q = 30;
   const int ahead = kMeetingTicks - ticks;
   addBody(made.pack, boxMesh(9000, 5000, 4000), 60000 + ahead * 2900, 80000, 800);
   addBody(made.pack, wedgeMesh(7000, 12000, 4000), 190000 - ahead * 2900, 85000, 1500);

@@ -62,7 +62,7 @@ TEST_P(DisplaceStage, DownToBedrockAndNoDeeper) {
 
 TEST_P(DisplaceStage, AGapOfTheObstacleThresholdTakesNothing) {
   ScenePack pack = groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000);
-  pack.obstacle_threshold_q = 80;
+  pack.parameters.obstacle_threshold_q = 80;
   const World world(std::move(pack));
   const auto rig = makeStageRig(GetParam(), world);
   rig->setUnderside({kNone, 1080, 900, 1081, kNone});
@@ -86,7 +86,7 @@ TEST(Displace, AShareIsRequestTimesRoomOverTotalForTheLargestNumbers) {
 void checkRandomWorld(const BackendCase& backend_case, int columns, int rows, std::uint32_t seed) {
   std::mt19937 engine(seed);
   ScenePack pack = noisePack(columns, rows, engine(), -3000, 3000, seed % 2 == 0 ? 100000 : 700);
-  pack.obstacle_threshold_q = seed % 3 == 0 ? 0 : 300;
+  pack.parameters.obstacle_threshold_q = seed % 3 == 0 ? 0 : 300;
   const World world(std::move(pack));
   const auto rig = makeStageRig(backend_case, world);
   std::vector<std::int32_t> underside;
@@ -97,8 +97,8 @@ void checkRandomWorld(const BackendCase& backend_case, int columns, int rows, st
   const auto before = rig->height();
   DenseWorld dense = denseCopy(*rig);
   rig->moveSoil();
-  const auto overlap = oracleOverlap(dense, world.pack.obstacle_threshold_q);
-  oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.obstacle_threshold_q);
+  const auto overlap = oracleOverlap(dense, world.pack.parameters.obstacle_threshold_q);
+  oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.parameters.obstacle_threshold_q);
   const auto after = rig->height();
   ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
   ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)),

@@ -80,7 +80,7 @@ TEST_P(GlBackends, WorldsOfAnyShape) {
   for (const auto& [columns, rows] : {std::pair{1, 200}, {200, 1}, {1, 1}, {77, 131}, {65, 63}, {64, 128}}) {
     SCOPED_TRACE(std::to_string(columns) + " x " + std::to_string(rows));
     ScenePack pack = noisePack(columns, rows, 7, -2000, 2000, 5000);
-    pack.obstacle_threshold_q = 20;
+    pack.parameters.obstacle_threshold_q = 20;
     addBody(pack, boxMesh(5000, 7000, 4000), columns * 400, rows * 300, 900);
     addBody(pack, tetrahedronMesh(9000), columns * 700, rows * 600, 2500);
     addBody(pack, bladeMesh(20000, 5000), columns * 500, rows * 500, 700);
@@ -119,7 +119,7 @@ TEST_P(GlBackends, BodiesOverTheWholeWorldLeaveNoCellOrOneCellFree) {
   for (const int free_cells : {0, 1}) {
     SCOPED_TRACE(free_cells);
     ScenePack pack = flatPack(70, 66);
-    pack.obstacle_threshold_q = 3;
+    pack.parameters.obstacle_threshold_q = 3;
     coverAllBut(pack, free_cells);
     const World world(std::move(pack));
     const std::vector<Pose> poses = initialPoses(world);
@@ -137,8 +137,8 @@ void checkHeightLimit(const BackendCase& backend_case, int width, int height, in
   std::vector<std::int32_t> ground;
   for (int i = 0; i < width * height; ++i) ground.push_back(kHighest - i * 7919 % 1000);
   ScenePack pack = groundPack(width, height, ground, kSoil);
-  pack.slope_threshold_q = pack.diagonal_threshold_q = 1;
-  pack.obstacle_threshold_q = threshold;
+  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 1;
+  pack.parameters.obstacle_threshold_q = threshold;
   coverAllBut(pack, 4);
   const World world(std::move(pack));
   Simulation simulation = world.simulateOn(backend_case), native = world.simulate();
@@ -162,7 +162,7 @@ TEST_P(GlBackends, LargeObstacleThresholdsShutWideGaps) {
   for (const int threshold : {1500, 20000, 1 << 20}) {
     SCOPED_TRACE(threshold);
     ScenePack pack = noisePack(100, 70, 3, -3000, 3000, 9000);
-    pack.obstacle_threshold_q = threshold;
+    pack.parameters.obstacle_threshold_q = threshold;
     addBody(pack, archMesh(30000, 20000, 9000), 40000, 30000, 700);
     addBody(pack, wedgeMesh(9000, 12000, 9000), 60000, 40000, 2000);
     const World world(std::move(pack));
@@ -224,7 +224,7 @@ TEST(GlDispatch, MoreGroupsThanARowOfADispatchHolds) {
   // first. The last group's rows are under the last rod.
   constexpr int kColumns = 256, kRows = 32, kTilesPerRod = 16;
   ScenePack pack = flatPack(kColumns * 64, kRows * 64);
-  pack.sweeps_per_tick = 1;
+  pack.parameters.sweeps_per_tick = 1;
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; column += kTilesPerRod)
       addBody(pack, boxMesh(kTilesPerRod * 64000 - 2000, 1000, 1000), (column + kTilesPerRod / 2) * 64000,
@@ -245,9 +245,9 @@ struct RoundTrip {
   }
   static ScenePack makePack() {
     ScenePack pack = noisePack(256, 60, 12, -2000, 2000, 20000);
-    pack.sweeps_per_tick = 2;
-    pack.slope_threshold_q = 3000;  // the trail comes to rest soon
-    pack.diagonal_threshold_q = 4242;
+    pack.parameters.sweeps_per_tick = 2;
+    pack.parameters.slope_threshold_q = 3000;  // the trail comes to rest soon
+    pack.parameters.diagonal_threshold_q = 4242;
     addBody(pack, boxMesh(9000, 20000, 5000), 30000, 30000, 800);
     return pack;
   }
@@ -278,7 +278,7 @@ TEST_P(GlBackends, TilesThatLeaveASmallPoolComeBackAsTheyWere) {
 
 TEST_P(GlBackends, ATickWithMoreTilesThanThePoolMakesItLarger) {
   ScenePack pack = noisePack(300, 250, 13, -2000, 2000, 20000);
-  pack.sweeps_per_tick = 2;
+  pack.parameters.sweeps_per_tick = 2;
   addBody(pack, boxMesh(200000, 150000, 5000), 150000, 120000, 600);
   const World world(std::move(pack));
   runInPoolOf(GetParam(), 2, world, drive(initialPoses(world), GetParam().slow() ? 1 : 3, 900, 100));

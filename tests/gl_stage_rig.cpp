@@ -66,7 +66,7 @@ class GlStageRig final : public StageRig {
     auto slots = pool_->hold(tiles.tiles, plan_.tick);
     if (!slots) throw std::runtime_error(slots.error());
     slots_ = std::move(*slots);
-    check(device_->stages.load(world.pack, meshes_));
+    check(device_->stages.load(meshes_));
     begin({});
   }
 
@@ -86,6 +86,8 @@ class GlStageRig final : public StageRig {
   void setTarget(const Cells& cells) override { upload(device_->stages.target().name(), 0, cells); }
   Cells tileHeights() const override { return tilesOf(device_->stages.height()); }
   Cells tileUndersides() const override { return tilesOf(device_->stages.underside()); }
+  Cells tileCompacted() const override { return Cells(slots_.size() * rules::kTileCells); }
+  std::int64_t keptBack() const override { return 0; }
 
   void press(const std::vector<PlacedBody>& bodies) override {
     const Cells heights = tileHeights();
@@ -147,6 +149,7 @@ class GlStageRig final : public StageRig {
     upload(device_->stages.tileStates().name(), 0, states);
   }
   void putTileHeights(const Cells& cells) override { restart(cells, tileUndersides()); }
+  void putTileCompacted(const Cells&) override {}
   void putTileUndersides(const Cells& cells) override { restart(tileHeights(), cells); }
 
   void putHeights(const Cells& heights) {

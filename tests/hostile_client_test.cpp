@@ -46,11 +46,19 @@ TEST(Hostile, ARequestBeforeTheHello) {
 }
 
 TEST(Hostile, ASecondHello) {
-  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}), p.say(Hello{1, "x"}); }, "second hello");
+  expectLetGo(
+      [](Player& p, Rig&) {
+        p.say(Hello{kProtocolVersion, "x"}), p.say(Hello{kProtocolVersion, "x"});
+      },
+      "second hello");
 }
 
 TEST(Hostile, ASecondPackRequest) {
-  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}), p.say(PackRequest{}), p.say(PackRequest{}); }, "out of turn");
+  expectLetGo(
+      [](Player& p, Rig&) {
+        p.say(Hello{kProtocolVersion, "x"}), p.say(PackRequest{}), p.say(PackRequest{});
+      },
+      "out of turn");
 }
 
 TEST(Hostile, SnapshotRequestsWithoutEnd) {
@@ -62,7 +70,7 @@ TEST(Hostile, SnapshotRequestsWithoutEnd) {
 }
 
 TEST(Hostile, AConfirmationBeforeTheSnapshot) {
-  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}), p.say(Confirm{1, 2}); }, "out of turn");
+  expectLetGo([](Player& p, Rig&) { p.say(Hello{kProtocolVersion, "x"}), p.say(Confirm{1, 2}); }, "out of turn");
 }
 
 TEST(Hostile, AConfirmationOfTheFuture) {
@@ -74,7 +82,7 @@ TEST(Hostile, AConfirmationOfThePast) {
 }
 
 TEST(Hostile, AnotherProtocolVersion) {
-  expectLetGo([](Player& p, Rig&) { p.say(Hello{2, "x"}); }, "server speaks protocol 1, this client 2");
+  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}); }, "server speaks protocol 2, this client 1");
 }
 
 TEST(Hostile, RandomMessagesNeverStopASession) {
@@ -88,7 +96,7 @@ TEST(Hostile, RandomMessagesNeverStopASession) {
     for (int said = 0; said < 8; ++said) {
       switch (random() % 5) {
         case 0:
-          hostile.say(Hello{1, "x"});
+          hostile.say(Hello{kProtocolVersion, "x"});
           break;
         case 1:
           hostile.say(PackRequest{});

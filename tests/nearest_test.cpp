@@ -160,8 +160,8 @@ TEST(Nearest, TheSwitchBetweenTwoColumnsIsTheFirstPlaceWhereTheSecondIsBefore) {
               y = pick(range);
     const int at = rules::nearestSwitch(y, ax, ay, bx, by);
     if (std::abs(at) > 16384) continue;  // outside every row
-    ASSERT_TRUE(rules::nearestBefore(at, y, bx, by, ax, ay)) << "round " << round;
-    ASSERT_TRUE(rules::nearestBefore(at - 1, y, ax, ay, bx, by)) << "round " << round;
+    ASSERT_TRUE(rules::nearestBefore(at, y, bx, by, ax, ay, rules::kEuclidean)) << "round " << round;
+    ASSERT_TRUE(rules::nearestBefore(at - 1, y, ax, ay, bx, by, rules::kEuclidean)) << "round " << round;
   }
 }
 

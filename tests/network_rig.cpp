@@ -47,7 +47,7 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) con
   }
   tile->hash = tileHash(*tile);
   tile->wake_mask = tick % 3 == 0 ? 0 : kWakeSelf;
-  return differenceOf(*tile, before, held == nullptr ? kDormantVersion : held->version_tick);
+  return differenceOf(*tile, before, nullptr, held == nullptr ? kDormantVersion : held->version_tick);
 }
 
 TickUpdate ScriptedSession::step() {

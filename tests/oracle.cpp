@@ -159,9 +159,9 @@ void Oracle::step(const std::vector<Pose>& poses) {
     const std::vector<Pose> now = posesOfSubStep(poses, step + 1);
     for (std::size_t i = 0; i < now.size(); ++i)
       if (takes_part[i]) oracleDepth(world_, placeForOracle(pack, int(i), now[i]));
-    const auto overlap = oracleOverlap(world_, pack.obstacle_threshold_q);
-    crowded_ = oracleDisplace(world_, overlap, oracleNearest(world_, overlap), pack.obstacle_threshold_q);
-    const int sweeps = pack.sweeps_per_tick;
+    const auto overlap = oracleOverlap(world_, pack.parameters.obstacle_threshold_q);
+    crowded_ = oracleDisplace(world_, overlap, oracleNearest(world_, overlap), pack.parameters.obstacle_threshold_q);
+    const int sweeps = pack.parameters.sweeps_per_tick;
     oracleRelax(world_, pack, (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
   }
   wake(before);
@@ -173,7 +173,7 @@ void Oracle::step(const std::vector<Pose>& poses) {
 /// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box
 /// of its changed cells.
 void Oracle::wake(const std::vector<std::int32_t>& before) {
-  const int reach = std::clamp(base_->pack().sweeps_per_tick, 1, kSize);
+  const int reach = std::clamp(base_->pack().parameters.sweeps_per_tick, 1, kSize);
   for (const TileCoordinate tile : active_tiles_) {
     int x0 = kSize, y0 = kSize, x1 = -1, y1 = -1;
     for (int y = 0; y < kSize; ++y)
@@ -214,6 +214,7 @@ std::uint64_t Oracle::stateHash() const {
   rest.put(tick_);
   rest.put(id_.low);
   rest.put(id_.high);
+  putParameters(rest, base_->pack().parameters);
   rest.put(std::uint32_t(poses_.size()));
   for (const auto* poses : {&poses_, &previous_poses_})
     for (const Pose& pose : *poses) {

@@ -231,8 +231,8 @@ void oracleRelax(DenseWorld& world, const ScenePack& pack, int sweep_count) {
           const std::size_t a = world.at(x, y), b = world.at(x + matching.dx, y + matching.dy);
           if (world.active[a] == 0 || world.active[b] == 0) continue;
           const bool diagonal = matching.dx != 0 && matching.dy != 0;
-          exchangePair(world, a, b, diagonal ? pack.diagonal_threshold_q : pack.slope_threshold_q,
-                       pack.obstacle_threshold_q);
+          exchangePair(world, a, b, diagonal ? pack.parameters.diagonal_threshold_q : pack.parameters.slope_threshold_q,
+                       pack.parameters.obstacle_threshold_q);
         }
 }
 

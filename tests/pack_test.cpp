@@ -17,7 +17,7 @@ ScenePack fullPack() {
   pack.seed = 0x123456789abcdefu;
   pack.ticks_per_second = 30;
   pack.default_ticks = 99;
-  pack.obstacle_threshold_q = 5;
+  pack.parameters.obstacle_threshold_q = 5;
   addBody(pack, archMesh(4000, 2000, 1000), 3000, 4000, 55);
   addBody(pack, tetrahedronMesh(900), 2000, 1000, -5);
   pack.paths[0] = {{{1, 2}, {300, 400}}, 17, 3, 1};
@@ -76,10 +76,10 @@ TEST(Pack, EveryFieldIsInTheId) {
       [](ScenePack& p) { ++p.seed; },
       [](ScenePack& p) { ++p.cell_q; },
       [](ScenePack& p) { ++p.soil_depth_q; },
-      [](ScenePack& p) { ++p.obstacle_threshold_q; },
-      [](ScenePack& p) { ++p.slope_threshold_q; },
-      [](ScenePack& p) { ++p.diagonal_threshold_q; },
-      [](ScenePack& p) { ++p.sweeps_per_tick; },
+      [](ScenePack& p) { ++p.parameters.obstacle_threshold_q; },
+      [](ScenePack& p) { ++p.parameters.slope_threshold_q; },
+      [](ScenePack& p) { ++p.parameters.diagonal_threshold_q; },
+      [](ScenePack& p) { ++p.parameters.sweeps_per_tick; },
       [](ScenePack& p) { ++p.samples.height_q[62]; },
       [](ScenePack& p) { ++p.meshes[1].vertices[3][2]; },
       [](ScenePack& p) { std::swap(p.meshes[0].triangles[0], p.meshes[0].triangles[1]); },
@@ -104,10 +104,10 @@ TEST(Pack, ValidateNamesTheFieldThatIsOutOfRange) {
       {"width_q", [](ScenePack& p) { p.width_cells = 1 << 23; }},
       {"cell_q", [](ScenePack& p) { p.cell_q = 0; }},
       {"soil_depth_q", [](ScenePack& p) { p.soil_depth_q = -1; }},
-      {"obstacle_threshold_q", [](ScenePack& p) { p.obstacle_threshold_q = -1; }},
-      {"slope_threshold_q", [](ScenePack& p) { p.slope_threshold_q = 0; }},
-      {"diagonal_threshold_q", [](ScenePack& p) { p.diagonal_threshold_q = 0; }},
-      {"sweeps_per_tick", [](ScenePack& p) { p.sweeps_per_tick = 65; }},
+      {"obstacle_threshold_q", [](ScenePack& p) { p.parameters.obstacle_threshold_q = -1; }},
+      {"slope_threshold_q", [](ScenePack& p) { p.parameters.slope_threshold_q = -1; }},
+      {"diagonal_threshold_q", [](ScenePack& p) { p.parameters.diagonal_threshold_q = -1; }},
+      {"sweeps_per_tick", [](ScenePack& p) { p.parameters.sweeps_per_tick = 1001; }},
       {"column_count", [](ScenePack& p) { p.samples.column_count = 0; }},
       {"height_q", [](ScenePack& p) { p.samples.height_q.pop_back(); }},
       {"sample_height", [](ScenePack& p) { p.samples.height_q[5] = 1 << 30; }},

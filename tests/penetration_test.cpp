@@ -39,7 +39,7 @@ TEST(Penetration, ClassifiesACellByTheGapAboveIt) {
 
 TEST_P(PenetrationStage, FiveByFiveCellsUnderASlantedBody) {
   ScenePack pack = groundPack(5, 5, std::vector<std::int32_t>(25, 1000), 600);
-  pack.obstacle_threshold_q = 50;
+  pack.parameters.obstacle_threshold_q = 50;
   const World world(std::move(pack));
   const auto rig = makeStageRig(GetParam(), world);
   rig->setUnderside({kNone, kNone, kNone, kNone, kNone,  //
@@ -63,7 +63,7 @@ TEST_P(PenetrationStage, EqualsTheOracleOnWorldsOfAnySize) {
   std::mt19937 engine(21);
   for (const auto& [columns, rows] : {std::pair{77, 131}, {1, 200}, {65, 1}, {130, 40}}) {
     ScenePack pack = noisePack(columns, rows, engine(), -2000, 2000, 900);
-    pack.obstacle_threshold_q = 100;
+    pack.parameters.obstacle_threshold_q = 100;
     const World world(std::move(pack));
     const auto rig = makeStageRig(GetParam(), world);
     std::vector<std::int32_t> underside;

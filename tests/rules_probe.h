@@ -94,7 +94,10 @@ RULE int probeRule(int which, int seed) {
     return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000),
                          drawn(seed, 70, -3000, 3000));
   if (which == 9)
-    return nearestBefore(small, threshold, threshold, drawn(seed, 71, 0, 40), drawn(seed, 72, 0, 40), small) ? 1 : 0;
+    return nearestBefore(small, threshold, threshold, drawn(seed, 71, 0, 40), drawn(seed, 72, 0, 40), small,
+                         drawn(seed, 75, 0, 2))
+               ? 1
+               : 0;
   int request = drawn(seed, 73, 1, kHeightLimit);
   return grantedShare(request, drawn(seed, 74, 0, kHeightLimit), wideAdd(wideFrom(request), wideMul(small, threshold)));
 }

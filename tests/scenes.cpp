@@ -17,8 +17,8 @@ ScenePack emptyPack(int width, int height) {
   pack.width_cells = width;
   pack.height_cells = height;
   pack.cell_q = kCell;
-  pack.slope_threshold_q = 700;
-  pack.diagonal_threshold_q = 990;
+  pack.parameters.slope_threshold_q = 700;
+  pack.parameters.diagonal_threshold_q = 990;
   return pack;
 }
 
@@ -155,10 +155,10 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   ScenePack& pack = world.pack;
   pack = noisePack(width, height, engine(), pick(-5000, 5000), 5000 + relief, oneOf({0, 40, 500, 3000, 100000}));
   pack.cell_q = oneOf({1000, 777, 500});
-  pack.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
-  pack.slope_threshold_q = oneOf({1, 7, 350, 700, 2000});
-  pack.diagonal_threshold_q = oneOf({1, 9, 495, 990, 2828});
-  pack.sweeps_per_tick = oneOf({0, 1, 3, 10});
+  pack.parameters.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
+  pack.parameters.slope_threshold_q = oneOf({1, 7, 350, 700, 2000});
+  pack.parameters.diagonal_threshold_q = oneOf({1, 9, 495, 990, 2828});
+  pack.parameters.sweeps_per_tick = oneOf({0, 1, 3, 10});
   const int body_count = pick(1, 3);
   for (int i = 0; i < body_count; ++i) {
     const int size = (pick(0, 5) == 0 ? pick(20, 90) : pick(1, 20)) * pack.cell_q / 2;
@@ -185,8 +185,9 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   }
   std::ostringstream text;
   text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "
-       << pack.soil_depth_q << ", thresholds " << pack.slope_threshold_q << " / " << pack.diagonal_threshold_q << " / "
-       << pack.obstacle_threshold_q << ", " << pack.sweeps_per_tick << " sweeps, bodies:";
+       << pack.soil_depth_q << ", thresholds " << pack.parameters.slope_threshold_q << " / "
+       << pack.parameters.diagonal_threshold_q << " / " << pack.parameters.obstacle_threshold_q << ", "
+       << pack.parameters.sweeps_per_tick << " sweeps, bodies:";
   for (const Body& body : pack.bodies) text << ' ' << body.name;
   world.description = text.str();
   return world;
@@ -232,7 +233,8 @@ std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles) {
         const std::int64_t difference =
             std::int64_t(tile->height()[std::size_t(i)]) -
             other->height()[std::size_t(other_y % rules::kTileSize * rules::kTileSize + other_x % rules::kTileSize)];
-        const int threshold = dx != 0 && dy != 0 ? pack.diagonal_threshold_q : pack.slope_threshold_q;
+        const int threshold =
+            dx != 0 && dy != 0 ? pack.parameters.diagonal_threshold_q : pack.parameters.slope_threshold_q;
         steepest = std::max(steepest, std::abs(difference) - threshold);
       }
     }

@@ -24,6 +24,7 @@ std::vector<TileCoordinate> allTiles(const ScenePack& pack) {
 
 StageRig::StageRig(const World& world, std::vector<TileCoordinate> active) : world_(world) {
   plan_.tick = 1;
+  plan_.parameters = world.pack.parameters;
   plan_.active = active.empty() ? allTiles(world.pack) : std::move(active);
   has_domain_ = plan_.active == allTiles(world.pack);
 }
@@ -69,9 +70,9 @@ NativeStageRig::NativeStageRig(const World& made_world, int thread_count, const 
     : StageRig(made_world, std::move(active)),
       pool(thread_count),
       tiles(takeTiles(plan_, made_world.base, WorldState{}, pool)),
-      context{made_world.pack, set, pool, area},
+      context{made_world.pack, plan_.parameters, set, pool, area},
       skip_settled_(skip_settled) {
-  area.gather(tiles.tiles, pool);
+  area.gather(tiles.tiles, plan_.parameters.compression_q16 > 0, pool);
   area.clearUnderside(made_world.pack, pool);
   runDepth(context, {});
   if (hasDomain()) domain.reset(domainBox(), area);
@@ -95,6 +96,10 @@ void NativeStageRig::setTarget(const Cells& cells) {
 void NativeStageRig::putTileUndersides(const Cells& cells) {
   putTiles(area.underside, cells);
   std::ranges::fill(area.lowest_underside, -rules::kHeightLimit);  // anything may limit: the careful path everywhere
+}
+
+Cells NativeStageRig::tileCompacted() const {
+  return area.compacted.empty() ? Cells(plan_.active.size() * rules::kTileCells) : tilesOf(area.compacted);
 }
 
 Cells NativeStageRig::tilesOf(const std::vector<std::int32_t>& plane) const {

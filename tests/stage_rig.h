@@ -24,6 +24,10 @@ class StageRig {
   void setHeight(const Cells& cells) { putTileHeights(withInside(tileHeights(), cells)); }
   /// As bodies would have left them.
   void setUnderside(const Cells& cells) { putTileUndersides(withInside(tileUndersides(), cells)); }
+  /// Compacted soil; all 0 where the world's parameters do not compact.
+  Cells compacted() const { return insideOf(tileCompacted()); }
+  /// Only where the world's parameters compact. After setHeight and setUnderside.
+  void setCompacted(const Cells& cells) { putTileCompacted(withInside(tileCompacted(), cells)); }
   virtual Cells overlap() const = 0;               // after penetration
   virtual int penetratingCount() const = 0;        // after penetration
   virtual Cells target() const = 0;                // after nearest; of penetrating cells
@@ -31,6 +35,7 @@ class StageRig {
   /// Active tiles' heights, kTileCells of each tile in the plan's order, cells outside the world included.
   virtual Cells tileHeights() const = 0;
   virtual Cells tileUndersides() const = 0;
+  virtual Cells tileCompacted() const = 0;
   const std::vector<TileCoordinate>& active() const { return plan_.active; }
   const World& world() const { return world_; }
 
@@ -39,6 +44,8 @@ class StageRig {
   virtual void penetration() = 0;
   virtual void nearest() = 0;
   virtual void displace() = 0;
+  /// Soil that the last displace() left where bodies are, 0.1 mm * cells.
+  virtual std::int64_t keptBack() const = 0;
   /// Sweeps, the first of them being number `first_sweep` since heights or undersides were set.
   virtual void relax(int first_sweep, int sweep_count) = 0;
 
@@ -50,6 +57,7 @@ class StageRig {
   StageRig(const World& world, std::vector<TileCoordinate> active);
   virtual void putTileHeights(const Cells& cells) = 0;
   virtual void putTileUndersides(const Cells& cells) = 0;
+  virtual void putTileCompacted(const Cells& cells) = 0;
   bool hasDomain() const { return has_domain_; }
   CellBox domainBox() const { return {0, 0, world_.pack.width_cells, world_.pack.height_cells}; }
 
@@ -76,10 +84,12 @@ class NativeStageRig final : public StageRig {
   void setTarget(const Cells& cells) override;
   Cells tileHeights() const override { return tilesOf(area.height); }
   Cells tileUndersides() const override { return tilesOf(area.underside); }
+  Cells tileCompacted() const override;
   void press(const std::vector<PlacedBody>& bodies) override;
   void penetration() override { runPenetration(context, domain); }
   void nearest() override { runNearest(context, domain); }
-  void displace() override { runDisplace(context, domain, 0); }
+  void displace() override { kept_back_ = runDisplace(context, domain, 0); }
+  std::int64_t keptBack() const override { return kept_back_; }
   void relax(int first_sweep, int sweep_count) override { runRelax(context, first_sweep, sweep_count, skip_settled_); }
 
   ThreadPool pool;
@@ -91,10 +101,12 @@ class NativeStageRig final : public StageRig {
  private:
   void putTileHeights(const Cells& cells) override { putTiles(area.height, cells); }
   void putTileUndersides(const Cells& cells) override;
+  void putTileCompacted(const Cells& cells) override { putTiles(area.compacted, cells); }
   Cells tilesOf(const std::vector<std::int32_t>& plane) const;
   void putTiles(std::vector<std::int32_t>& plane, const Cells& cells);
 
   bool skip_settled_;
+  std::int64_t kept_back_ = 0;
 };
 
 /// The rig of a case's backend. Throws std::runtime_error where it cannot be made.

@@ -13,7 +13,7 @@ void checkCells(const World& world, const Oracle& oracle) {
   const DenseWorld& cells = oracle.world();
   for (std::size_t i = 0; i < cells.height.size(); ++i) ASSERT_GE(cells.height[i], cells.bedrock[i]) << "cell " << i;
   if (oracle.activeTiles().empty()) return;
-  const auto overlap = oracleOverlap(cells, world.pack.obstacle_threshold_q);
+  const auto overlap = oracleOverlap(cells, world.pack.parameters.obstacle_threshold_q);
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     const bool fine = overlap[i] <= 0 || std::ranges::binary_search(oracle.crowdedCells(), i);
     ASSERT_TRUE(fine) << "cell " << i << " reaches into a body";
@@ -130,7 +130,7 @@ TEST_P(WholeTick, ABodyThatCoversTheWholeWorldLeavesTheSoilNowhereToGo) {
 TEST_P(WholeTick, AFastBodyLeavesATrailWithoutGaps) {
   ScenePack pack = flatPack(120, 40);
   addBody(pack, boxMesh(3000, 3000, 3000), 10000, 20000, 600);
-  pack.slope_threshold_q = pack.diagonal_threshold_q = 5000;  // the trail keeps its walls
+  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 5000;  // the trail keeps its walls
   const World world(std::move(pack));
   Simulation simulation = world.simulateOn(GetParam());
   ASSERT_TRUE(simulation.step(simulation.state().poses));

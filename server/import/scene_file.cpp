@@ -62,8 +62,8 @@ WorldSize readWorld(TableReader& world, SceneDraft& draft) {
 void readSoil(TableReader& soil, SceneDraft& draft) {
   ScenePack& pack = draft.scene.pack;
   setReposeAngle(pack, soil.number("repose_deg", {0, 89, "degrees"}, 35), draft.scene.notes);
-  pack.obstacle_threshold_q = toUnits(soil.number("obstacle_threshold_m", {0, 100, "m"}, 0.001));
-  pack.sweeps_per_tick = std::int32_t(soil.integer("sweeps_per_tick", {0, 64, ""}, 10));
+  pack.parameters.obstacle_threshold_q = toUnits(soil.number("obstacle_threshold_m", {0, 100, "m"}, 0.001));
+  pack.parameters.sweeps_per_tick = std::int32_t(soil.integer("sweeps_per_tick", {0, 64, ""}, 10));
   soil.finish();
 }
 

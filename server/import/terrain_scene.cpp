@@ -84,7 +84,7 @@ Result<ImportedScene> importTerrain(const TerrainRequest& request) {
   pack.default_ticks = std::int32_t(request.ticks);
   pack.cell_q = toUnits(request.cell_m);
   pack.soil_depth_q = toUnits(kSoilDepthM);
-  pack.obstacle_threshold_q = 10;
+  pack.parameters.obstacle_threshold_q = 10;
   setReposeAngle(pack, kReposeDeg, scene.notes);
 
   DemRequest dem_request;

@@ -166,7 +166,7 @@ class GlBackend final : public Backend {
     StageTimer timer(tick.effect.stage_ms, Stage::active);
     if (loaded_ != tick.pack) {
       meshes_ = makeMeshTable(*tick.pack);
-      if (Status status = device_->stages.load(*tick.pack, meshes_); !status) return status;
+      if (Status status = device_->stages.load(meshes_); !status) return status;
       loaded_ = tick.pack;
     }
     auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick);
@@ -246,7 +246,7 @@ class GlBackend final : public Backend {
       first_of_tile[i] = result.first_staged;
     }
     std::vector<TileChange>& changes = tick.effect.changes;
-    changes = commitTick(tick.plan, tick.pack->sweeps_per_tick, std::move(tick.active), std::move(outcomes), state);
+    changes = commitTick(tick.plan, std::move(tick.active), std::move(outcomes), state);
     Uncollected& left = uncollected_.emplace_back();
     std::size_t tile = 0;
     for (const TileChange& change : changes) {

@@ -84,10 +84,7 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       exchange_[std::size_t(matching)][std::size_t(beneath)] = exchangeProgram(matching, beneath, shape.group);
 }
 
-Status GlStages::load(const ScenePack& pack, const MeshTable& meshes) {
-  slope_threshold_ = pack.slope_threshold_q;
-  diagonal_threshold_ = pack.diagonal_threshold_q;
-  obstacle_threshold_ = pack.obstacle_threshold_q;
+Status GlStages::load(const MeshTable& meshes) {
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
     if (Status status = to.reserve(std::int64_t(table.size()) * kCellBytes); !status) return status;
     if (!table.empty()) glNamedBufferSubData(to.name(), 0, std::int64_t(table.size()) * kCellBytes, table.data());
@@ -278,8 +275,9 @@ void GlStages::sweepPlain(const TickTables& tick, int first_step) {
     setUniform(2, first_step + matching);
     setUniform(3, skip_settled_ ? 1 : 0);
     setUniform(4, int(tick.tile_index.size()));
-    setUniform(5, matching < rules::kMatchDiagonal ? slope_threshold_ : diagonal_threshold_);
-    setUniform(6, obstacle_threshold_);
+    setUniform(5, rules::exchangeThreshold(matching < rules::kMatchDiagonal ? tick.parameters.slope_threshold_q
+                                                                            : tick.parameters.diagonal_threshold_q));
+    setUniform(6, tick.parameters.obstacle_threshold_q);
     dispatch(tick.exchange);
   }
 }

@@ -27,8 +27,8 @@ class GlStages {
   /// Throws std::runtime_error where a shader does not compile or link.
   GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled);
 
-  /// Takes a pack's thresholds, and copies its meshes to the device. Errors: too large for it.
-  [[nodiscard]] Status load(const ScenePack& pack, const MeshTable& meshes);
+  /// Copies a pack's meshes to the device. Errors: too large for it.
+  [[nodiscard]] Status load(const MeshTable& meshes);
 
   /// Makes room for a tick and copies its tables to the device. Errors: the device has not the memory.
   [[nodiscard]] Status begin(const TickTables& tick);
@@ -72,7 +72,6 @@ class GlStages {
   bool skip_settled_;
   std::int64_t dispatch_count_ = 0;
   int current_ = 0;  // which of height_ holds the heights
-  int slope_threshold_ = 0, diagonal_threshold_ = 0, obstacle_threshold_ = 0;
   GlProgram gather_, cover_, ceiling_, place_, depth_, depth_large_, penetration_, nearest_columns_, nearest_search_,
       displace_request_, displace_take_, displace_give_, sweep_, hash_;
   // Of each matching; the second where bodies may stand over active tiles.

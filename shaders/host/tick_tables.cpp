@@ -79,6 +79,7 @@ class TableMaker {
       sweep += sub_step.sweep_count;
     }
     putHead();
+    tables_.parameters = plan_.parameters;
     return std::move(tables_);
   }
 
@@ -219,9 +220,9 @@ class TableMaker {
   void putHead() {
     rules::TickHead head{};
     head.tile_count = count_;
-    head.obstacle_threshold = pack_.obstacle_threshold_q;
-    head.slope_threshold = pack_.slope_threshold_q;
-    head.diagonal_threshold = pack_.diagonal_threshold_q;
+    head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
+    head.slope_threshold = rules::exchangeThreshold(plan_.parameters.slope_threshold_q);
+    head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.diagonal_threshold_q);
     head.highest = -rules::kHeightLimit;
     for (rules::SubStepLists& lists : head.lists) {
       const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
@@ -266,7 +267,7 @@ MeshTable makeMeshTable(const ScenePack& pack) {
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
                           std::span<const int> slots, std::int32_t highest, const GroupShape& shape) {
   TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots);
-  tables.beneath = highest + pack.obstacle_threshold_q >= rules::kNoUnderside;
+  tables.beneath = highest + plan.parameters.obstacle_threshold_q >= rules::kNoUnderside;
   for (const SubStepTables& step : tables.sub_steps) tables.beneath |= step.cover.count > 0;
   return tables;
 }

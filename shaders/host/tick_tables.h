@@ -53,6 +53,7 @@ struct SubStepTables {
 /// Everything that the shaders need to know of a tick, in one piece of bytes.
 struct TickTables {
   std::vector<std::uint8_t> bytes;
+  Parameters parameters;
   TableRange head;   // TickHead and row flags
   TableRange tiles;  // TileEntry [active tiles]
   GroupList gather, exchange, sweep, hash;

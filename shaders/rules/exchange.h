@@ -15,6 +15,9 @@ RULE_CONST kMatchVertical = 2;      // matchings 2, 3: (x, y) - (x, y+1), parity
 RULE_CONST kMatchDiagonal = 4;      // matchings 4, 5: (x, y) - (x+1, y+1), parity of y
 RULE_CONST kMatchAntidiagonal = 6;  // matchings 6, 7: (x, y) - (x-1, y+1), parity of y
 
+/// The threshold that pairs exchange by: not less than 1, or a pair that differs by 1 would swap for ever.
+RULE int exchangeThreshold(int slope_threshold) { return maxInt(slope_threshold, 1); }
+
 /// Soil that flows from cell a to cell b (negative: from b to a), in height units.
 /// @param threshold  largest height difference that rests, >= 1
 /// @param soil_a, soil_b  height above bedrock, >= 0: a cell gives no more than that

@@ -125,6 +125,11 @@ RULE int wideClamp(wide a, int low, int high) {
 /// floor(a / b) for b > 0. Range: a > -2^31.
 RULE int floorDiv(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 RULE int clampInt(int a, int low, int high) { return minInt(maxInt(a, low), high); }
+RULE int absInt(int a) { return a < 0 ? -a : a; }
+/// floor(a * share / 2^16). Ranges: a >= 0, share 0..2^16. In halves of 32 bits, so that loops over it vectorise.
+RULE int timesQ16(int a, int share) {
+  return int(uint(a >> 16) * uint(share) + (uint(a & 0xffff) * uint(share) >> 16));
+}
 
 SPOOR_RULES_END
 

@@ -16,5 +16,14 @@ RULE_CONST kFree = -1;     // overlap of a cell that can receive soil (the thesi
 RULE_CONST kObstacle = 0;  // overlap of a cell just under, or inside, a body; > 0: penetrating
 RULE_CONST kNoTarget = -1;
 
+// Planes, as they enter hashes.
+RULE_CONST kHeightPlane = 0;
+RULE_CONST kCompactedPlane = 1;
+
+/// The eight neighbours of a cell, in turn from +x towards +y: d = 0..7 is (1,0) (1,1) (0,1) (-1,1) (-1,0) ...; the one
+/// opposite to d is d ^ 4. One from each of two bits of a constant.
+RULE int neighbourX(int d) { return (0x901a >> (2 * d) & 3) - 1; }
+RULE int neighbourY(int d) { return (0x01a9 >> (2 * d) & 3) - 1; }
+
 SPOOR_RULES_END
 #endif

@@ -21,7 +21,8 @@ RULE uint cellKey(int x, int y, int plane) {
   return mix32(uint(x) * 0x9e3779b1u + mix32(uint(y) * 0x85ebca77u + uint(plane)));
 }
 
-/// The low and high lane of a cell's hash. Added up over cells as (high << 32) + low with 64-bit wrap-around.
+/// The low and high lane of a cell's hash. Added up over cells as (high << 32) + low with 64-bit wrap-around. In planes
+/// other than height only cells that are not 0 count, so that a plane nobody made hashes like one that is 0 everywhere.
 RULE uint cellMixLow(uint key, int value) { return mix32(key ^ uint(value)); }
 RULE uint cellMixHigh(uint key, int value) { return mix32((key + 0x632be5abu) ^ (uint(value) * 0x2c1b3c6du)); }
 

@@ -11,7 +11,6 @@ layout(std430, binding = kBindPoolHeight) buffer PoolHeight { int pool_height[];
 layout(std430, binding = kBindResults) writeonly buffer Results { TileResult results[]; };
 layout(std430, binding = kBindStaging) writeonly buffer Staging { int staging[]; };
 
-const int kHeightPlane = 0;
 shared int box_x0, box_y0, box_x1, box_y1, first_staged;
 shared uint sums[6];
 

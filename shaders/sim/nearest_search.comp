@@ -24,7 +24,7 @@ int best_square;
 void consider(int column) {
   int free_row = nearest_row[row_start + column];
   if (free_row == kNoFreeRow) return;
-  if (best.x >= 0 && !nearestBefore(x, row, column, free_row, best.x, best.y)) return;
+  if (best.x >= 0 && !nearestBefore(x, row, column, free_row, best.x, best.y, kEuclidean)) return;
   best = ivec2(column, free_row);
   best_square = (column - x) * (column - x) + (free_row - row) * (free_row - row);
 }

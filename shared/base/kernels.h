@@ -12,6 +12,8 @@ struct Kernels {
 
   /// Sum of the cell hashes (rules/mix.h) of a tile whose first cell is (x, y).
   std::uint64_t (*hashTile)(const std::int32_t* cells, int x, int y, int plane);
+  /// The same over the cells that are not 0.
+  std::uint64_t (*hashSparseTile)(const std::int32_t* cells, int x, int y, int plane);
   std::int64_t (*sum)(const std::int32_t* cells, int n);
   /// Smallest and largest of n >= 1 cells.
   std::int32_t (*lowest)(const std::int32_t* cells, int n);

@@ -15,7 +15,8 @@ using std::int32_t;
 using std::int64_t;
 using std::uint64_t;
 
-uint64_t hashTile(const int32_t* cells, int x, int y, int plane) {
+template <bool kSparse>
+inline uint64_t hashCells(const int32_t* cells, int x, int y, int plane) {
   uint64_t low_sum = 0;
   uint64_t high_sum = 0;
   for (int row = 0; row < rules::kTileSize; ++row) {
@@ -25,8 +26,9 @@ uint64_t hashTile(const int32_t* cells, int x, int y, int plane) {
     for (int i = 0; i < rules::kTileSize; ++i) {
       const rules::uint key = rules::mix32(rules::uint(x + i) * 0x9e3779b1u + row_key);
       const int32_t value = cells[row * rules::kTileSize + i];
-      const rules::uint low = rules::cellMixLow(key, value);
-      const rules::uint high = rules::cellMixHigh(key, value);
+      const rules::uint counts = kSparse && value == 0 ? 0u : ~0u;
+      const rules::uint low = rules::cellMixLow(key, value) & counts;
+      const rules::uint high = rules::cellMixHigh(key, value) & counts;
       low_a += low & 0xffffu;
       low_b += low >> 16;
       high_a += high & 0xffffu;
@@ -37,6 +39,9 @@ uint64_t hashTile(const int32_t* cells, int x, int y, int plane) {
   }
   return low_sum + (high_sum << 32);
 }
+
+uint64_t hashTile(const int32_t* cells, int x, int y, int plane) { return hashCells<false>(cells, x, y, plane); }
+uint64_t hashSparseTile(const int32_t* cells, int x, int y, int plane) { return hashCells<true>(cells, x, y, plane); }
 
 int64_t sum(const int32_t* cells, int n) {
   int64_t total = 0;
@@ -158,6 +163,7 @@ bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, co
 extern const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME);
 const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERNELS_NAME),
                                                            hashTile,
+                                                           hashSparseTile,
                                                            sum,
                                                            lowest,
                                                            highest,

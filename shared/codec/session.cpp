@@ -13,7 +13,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x53525053;  // "SPRS"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint8_t kPackRecord = 1;
 constexpr std::uint8_t kTickRecord = 2;
 
@@ -39,6 +39,7 @@ std::vector<std::uint8_t> tickBytes(const TickRecord& record) {
   visitLedger(record.ledger, [&](auto value) { writer.put(value); });
   writer.put(std::uint32_t(record.poses.size()));
   for (const Pose& pose : record.poses) putPose(writer, pose);
+  if (record.parameters) putParameters(writer, *record.parameters);
   return recordBytes(kTickRecord, writer.bytes);
 }
 
@@ -180,9 +181,14 @@ Result<std::optional<TickRecord>> SessionReader::next() {
   tick.state_hash = reader.get<std::uint64_t>();
   visitLedger(tick.ledger, [&](auto& value) { value = reader.get<std::int64_t>(); });
   const std::size_t count = reader.get<std::uint32_t>();
-  if (count != pack_.bodies.size() || reader.left() != count * kPoseBytes)
+  const std::size_t pose_bytes = pack_.bodies.size() * kPoseBytes;
+  if (count != pack_.bodies.size() || (reader.left() != pose_bytes && reader.left() != pose_bytes + kParametersBytes))
     return Error{where + "tick record does not fit the pack's bodies"};
   for (std::size_t i = 0; i < count; ++i) tick.poses.push_back(getPose(reader));
+  if (reader.left() > 0) {
+    tick.parameters = getParameters(reader);
+    if (Status status = validateParameters(pack_, *tick.parameters); !status) return Error{where + status.error()};
+  }
   if (tick.tick != last_tick_ + 1)
     return Error{where + "tick " + std::to_string(tick.tick) + " follows tick " + std::to_string(last_tick_)};
   last_tick_ = tick.tick;

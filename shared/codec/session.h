@@ -22,6 +22,7 @@ struct TickRecord {
   std::vector<Pose> poses;
   std::uint64_t state_hash = 0;
   Ledger ledger;
+  std::optional<Parameters> parameters = {};  // from this tick on, where they changed
 };
 
 /// Appends to a session file from a thread of its own: append() never waits for the disk.

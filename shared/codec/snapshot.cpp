@@ -9,6 +9,7 @@ std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerr
   ByteWriter writer;
   writer.put(state.tick);
   writer.put(stateHash(state));
+  putParameters(writer, state.parameters);
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
@@ -16,7 +17,7 @@ std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerr
   PlaneCells ground;
   for (const Tile* tile : state.tiles.sorted()) {
     base.fillHeights(tile->at, ground);
-    changes.push_back(differenceOf(*tile, ground, kDormantVersion));
+    changes.push_back(differenceOf(*tile, ground, nullptr, kDormantVersion));
   }
   writer.putBytes(encodeTiles(changes));
   return std::move(writer.bytes);
@@ -28,8 +29,11 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   state.pack_id = id;
   state.tick = reader.get<std::int32_t>();
   const auto state_hash = reader.get<std::uint64_t>();
+  state.parameters = getParameters(reader);
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
+  if (Status status = validateParameters(base.pack(), state.parameters); !status)
+    return Error{"snapshot: " + status.error()};
   if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
     return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) +
                  " bodies"};

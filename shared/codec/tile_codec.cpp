@@ -1,6 +1,7 @@
 #include "shared/codec/tile_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 
@@ -11,24 +12,35 @@
 namespace spoor {
 namespace {
 
-constexpr std::size_t kEntryBytes = 4 * 4 + 2 + 8 + 6;
+constexpr std::size_t kEntryBytes = 4 * 4 + 2 + 8 + 1 + 4 + kPlaneCount;
 
 std::string nameOf(TileCoordinate at) { return "tile (" + std::to_string(at.x) + ", " + std::to_string(at.y) + ")"; }
 
 std::uint32_t zigzag(std::int32_t v) { return (std::uint32_t(v) << 1) ^ std::uint32_t(v >> 31); }
 std::int32_t unzigzag(std::uint32_t v) { return std::int32_t((v >> 1) ^ (0u - (v & 1u))); }
 
-/// Bytes that the largest zigzag difference of a box needs, 0 for an empty box.
-std::uint8_t byteCount(const TileChange& change) {
-  std::uint32_t all = 0;
-  for (const std::int32_t d : change.difference) all |= zigzag(d);
-  return std::uint8_t(change.difference.empty() ? 0 : all < 0x100 ? 1 : all < 0x10000 ? 2 : all < 0x1000000 ? 3 : 4);
+/// The differences of a plane.
+std::vector<std::int32_t>& planeOf(TileChange& change, int plane) {
+  return plane == int(Plane::height) ? change.difference : change.compaction;
 }
+const std::vector<std::int32_t>& planeOf(const TileChange& change, int plane) {
+  return planeOf(const_cast<TileChange&>(change), plane);
+}
+
+/// Bytes that the largest zigzag difference needs, 0 where all are 0.
+std::uint8_t byteCount(const std::vector<std::int32_t>& difference) {
+  std::uint32_t all = 0;
+  for (const std::int32_t d : difference) all |= zigzag(d);
+  return std::uint8_t(all == 0 ? 0 : all < 0x100 ? 1 : all < 0x10000 ? 2 : all < 0x1000000 ? 3 : 4);
+}
+
+/// Bytes per difference in each plane.
+using ByteCounts = std::array<std::uint8_t, kPlaneCount>;
 
 struct Entry {
   TileChange change;
-  std::uint8_t planes = 0;
-  std::uint8_t byte_count = 0;
+  std::uint8_t planes = 0;  // bit i: plane i differs somewhere
+  ByteCounts byte_counts{};
 };
 
 /// Checks one entry's header; the difference is not read yet.
@@ -41,10 +53,12 @@ Status checkEntry(const Entry& entry, TileCoordinate extent) {
     return wrong("versions run backwards");
   if (change.wake_mask >= kWakeMaskLimit || (change.wake_mask != 0 && (change.wake_mask & kWakeSelf) == 0))
     return wrong("wake mask is none that a tick makes");
-  if (entry.planes > 1) return wrong("names a plane that this version does not know");
-  if ((entry.planes == 1) != (change.width > 0) || (change.width > 0) != (change.height > 0) ||
-      (change.width > 0) != (entry.byte_count > 0) || entry.byte_count > 4)
+  if (entry.planes >> kPlaneCount != 0) return wrong("names a plane that this version does not know");
+  if ((entry.planes != 0) != (change.width > 0) || (change.width > 0) != (change.height > 0))
     return wrong("box and planes disagree");
+  for (int plane = 0; plane < kPlaneCount; ++plane)
+    if ((entry.planes >> plane & 1) != (entry.byte_counts[plane] > 0 ? 1 : 0) || entry.byte_counts[plane] > 4)
+      return wrong("planes and bytes disagree");
   if (change.x + change.width > rules::kTileSize || change.y + change.height > rules::kTileSize)
     return wrong("box leaves the tile");
   return {};
@@ -52,58 +66,80 @@ Status checkEntry(const Entry& entry, TileCoordinate extent) {
 
 }  // namespace
 
-TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t base_version) {
+TileChange differenceOf(const Tile& tile, const PlaneCells& before, const PlaneCells* compacted_before,
+                        std::int32_t base_version) {
   constexpr int size = rules::kTileSize;
+  static const PlaneCells none{};
+  const PlaneCells* const after[kPlaneCount] = {&tile.height(), tile.compacted() != nullptr ? tile.compacted() : &none};
+  const PlaneCells* const old[kPlaneCount] = {&before, compacted_before != nullptr ? compacted_before : &none};
   int x_first = size, x_last = -1, y_first = size, y_last = -1;
-  const PlaneCells& after = tile.height();
-  for (int y = 0; y < size; ++y) {
-    const std::int32_t* a = after.data() + y * size;
-    const std::int32_t* b = before.data() + y * size;
-    if (std::memcmp(a, b, size * sizeof(*a)) == 0) continue;
-    int first = 0, last = size - 1;
-    while (a[first] == b[first]) ++first;
-    while (a[last] == b[last]) --last;
-    x_first = std::min(x_first, first);
-    x_last = std::max(x_last, last);
-    y_first = std::min(y_first, y);
-    y_last = y;
+  bool differs[kPlaneCount] = {};
+  for (int plane = 0; plane < kPlaneCount; ++plane) {
+    if (after[plane] == old[plane]) continue;
+    for (int y = 0; y < size; ++y) {
+      const std::int32_t* a = after[plane]->data() + y * size;
+      const std::int32_t* b = old[plane]->data() + y * size;
+      if (std::memcmp(a, b, size * sizeof(*a)) == 0) continue;
+      int first = 0, last = size - 1;
+      while (a[first] == b[first]) ++first;
+      while (a[last] == b[last]) --last;
+      x_first = std::min(x_first, first);
+      x_last = std::max(x_last, last);
+      y_first = std::min(y_first, y);
+      y_last = std::max(y_last, y);
+      differs[plane] = true;
+    }
   }
-  TileChange change{tile.at, base_version, tile.version_tick, tile.wake_mask, tile.hash, 0, 0, 0, 0, {}};
+  TileChange change{tile.at, base_version, tile.version_tick, tile.wake_mask, tile.hash, 0, 0, 0, 0, {}, {}};
   if (x_last < 0) return change;
   change.x = std::uint8_t(x_first);
   change.y = std::uint8_t(y_first);
   change.width = std::uint8_t(x_last - x_first + 1);
   change.height = std::uint8_t(y_last - y_first + 1);
-  change.difference.reserve(std::size_t(change.width) * change.height);
-  for (int y = y_first; y <= y_last; ++y)
-    for (int x = x_first; x <= x_last; ++x) change.difference.push_back(after[y * size + x] - before[y * size + x]);
+  for (int plane = 0; plane < kPlaneCount; ++plane) {
+    if (!differs[plane] && plane != int(Plane::height)) continue;
+    std::vector<std::int32_t>& difference = planeOf(change, plane);
+    difference.reserve(std::size_t(change.width) * change.height);
+    for (int y = y_first; y <= y_last; ++y)
+      for (int x = x_first; x <= x_last; ++x) {
+        const auto i = std::size_t(y * size + x);
+        difference.push_back((*after[plane])[i] - (*old[plane])[i]);
+      }
+  }
   return change;
 }
 
 std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes) {
   ByteWriter writer;
-  std::vector<std::uint8_t> byte_counts;
+  std::vector<ByteCounts> byte_counts(changes.size());
   writer.put(std::uint32_t(changes.size()));
-  for (const TileChange& change : changes) {
-    byte_counts.push_back(byteCount(change));
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const TileChange& change = changes[i];
+    std::uint8_t planes = 0;
+    for (int plane = 0; plane < kPlaneCount; ++plane) {
+      byte_counts[i][plane] = byteCount(planeOf(change, plane));
+      planes = std::uint8_t(planes | (byte_counts[i][plane] > 0 ? 1 << plane : 0));
+    }
     writer.put(change.at.x);
     writer.put(change.at.y);
     writer.put(change.base_version);
     writer.put(change.new_version);
     writer.put(change.wake_mask);
     writer.put(change.hash);
-    writer.put(std::uint8_t(change.difference.empty() ? 0 : 1 << int(Plane::height)));
-    for (const std::uint8_t value : {change.x, change.y, change.width, change.height, byte_counts.back()})
-      writer.put(value);
+    writer.put(planes);
+    for (const std::uint8_t value : {change.x, change.y, change.width, change.height}) writer.put(value);
+    for (const std::uint8_t value : byte_counts[i]) writer.put(value);
   }
-  for (int byte = 0; byte < 4; ++byte)
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-      if (byte_counts[i] <= byte) continue;
-      const std::size_t at = writer.bytes.size();
-      writer.bytes.resize(at + changes[i].difference.size());
-      std::ranges::transform(changes[i].difference, writer.bytes.begin() + std::ptrdiff_t(at),
-                             [byte](std::int32_t d) { return std::uint8_t(zigzag(d) >> (8 * byte)); });
-    }
+  for (int plane = 0; plane < kPlaneCount; ++plane)
+    for (int byte = 0; byte < 4; ++byte)
+      for (std::size_t i = 0; i < changes.size(); ++i) {
+        if (byte_counts[i][plane] <= byte) continue;
+        const std::vector<std::int32_t>& difference = planeOf(changes[i], plane);
+        const std::size_t at = writer.bytes.size();
+        writer.bytes.resize(at + difference.size());
+        std::ranges::transform(difference, writer.bytes.begin() + std::ptrdiff_t(at),
+                               [byte](std::int32_t d) { return std::uint8_t(zigzag(d) >> (8 * byte)); });
+      }
   return std::move(writer.bytes);
 }
 
@@ -127,29 +163,35 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
     change.wake_mask = reader.get<WakeMask>();
     change.hash = reader.get<std::uint64_t>();
     entry.planes = reader.get<std::uint8_t>();
-    for (std::uint8_t* value : {&change.x, &change.y, &change.width, &change.height, &entry.byte_count})
+    for (std::uint8_t* value : {&change.x, &change.y, &change.width, &change.height})
       *value = reader.get<std::uint8_t>();
+    for (std::uint8_t& value : entry.byte_counts) value = reader.get<std::uint8_t>();
     if (Status status = checkEntry(entry, extent); !status) return Error{status.error()};
     if (i > 0 && !(entries[i - 1].change.at < change.at)) return Error{nameOf(change.at) + ": out of order"};
-    plane_bytes += std::size_t(change.width) * change.height * entry.byte_count;
+    for (const std::uint8_t byte_count : entry.byte_counts)
+      plane_bytes += std::size_t(change.width) * change.height * byte_count;
   }
   if (reader.failed() || plane_bytes != reader.left())
     return Error{"tile changes: " + std::to_string(reader.left()) + " bytes of differences, not " +
                  std::to_string(plane_bytes)};
   std::vector<TileChange> changes;
   changes.reserve(count);
-  for (Entry& entry : entries) entry.change.difference.resize(std::size_t(entry.change.width) * entry.change.height);
-  for (int byte = 0; byte < 4; ++byte)
-    for (Entry& entry : entries) {
-      if (entry.byte_count <= byte) continue;
-      const auto part = reader.getBytes(entry.change.difference.size());
-      for (std::size_t i = 0; i < part.size(); ++i) {
-        std::int32_t& d = entry.change.difference[i];
-        d = std::int32_t(std::uint32_t(d) | std::uint32_t(part[i]) << (8 * byte));
+  for (Entry& entry : entries)
+    for (int plane = 0; plane < kPlaneCount; ++plane)
+      if (plane == int(Plane::height) || entry.byte_counts[plane] > 0)
+        planeOf(entry.change, plane).resize(std::size_t(entry.change.width) * entry.change.height);
+  for (int plane = 0; plane < kPlaneCount; ++plane)
+    for (int byte = 0; byte < 4; ++byte)
+      for (Entry& entry : entries) {
+        if (entry.byte_counts[plane] <= byte) continue;
+        std::vector<std::int32_t>& difference = planeOf(entry.change, plane);
+        const auto part = reader.getBytes(difference.size());
+        for (std::size_t i = 0; i < part.size(); ++i)
+          difference[i] = std::int32_t(std::uint32_t(difference[i]) | std::uint32_t(part[i]) << (8 * byte));
       }
-    }
   for (Entry& entry : entries) {
-    for (std::int32_t& d : entry.change.difference) d = unzigzag(std::uint32_t(d));
+    for (int plane = 0; plane < kPlaneCount; ++plane)
+      for (std::int32_t& d : planeOf(entry.change, plane)) d = unzigzag(std::uint32_t(d));
     changes.push_back(std::move(entry.change));
   }
   return changes;
@@ -159,9 +201,10 @@ namespace {
 
 /// A tile's new cells, checked, waiting for all the others to be checked too.
 struct Prepared {
-  Tile* live = nullptr;                // where it was live already
-  std::unique_ptr<Tile> fresh;         // where it was dormant
-  std::unique_ptr<PlaneCells> height;  // its new cells
+  Tile* live = nullptr;                   // where it was live already
+  std::unique_ptr<Tile> fresh;            // where it was dormant
+  std::unique_ptr<PlaneCells> height;     // its new cells
+  std::unique_ptr<PlaneCells> compacted;  // the same; nullptr: as it was
 };
 
 Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change) {
@@ -174,20 +217,30 @@ Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileC
   if (prepared.live == nullptr) prepared.fresh = makeTile(change.at, base, change.new_version);
   Tile& tile = prepared.live != nullptr ? *prepared.live : *prepared.fresh;
   prepared.height = std::make_unique<PlaneCells>(tile.height());
-  auto d = change.difference.begin();
+  if (!change.compaction.empty())
+    prepared.compacted =
+        tile.compacted() != nullptr ? std::make_unique<PlaneCells>(*tile.compacted()) : std::make_unique<PlaneCells>();
+  std::size_t next = 0;
   for (int y = change.y; y < change.y + change.height; ++y)
     for (int x = change.x; x < change.x + change.width; ++x) {
       const auto i = std::size_t(y * rules::kTileSize + x);
-      const std::int64_t height = std::int64_t((*prepared.height)[i]) + *d++;
+      const std::int64_t height = std::int64_t((*prepared.height)[i]) + change.difference[next];
       const bool inside = change.at.x * rules::kTileSize + x < base.pack().width_cells &&
                           change.at.y * rules::kTileSize + y < base.pack().height_cells;
       if (height < (*tile.bedrock)[i] || height > (inside ? rules::kHeightLimit : 0))
         return Error{nameOf(change.at) + ": a height lies below bedrock, above the limit or outside the world"};
       (*prepared.height)[i] = std::int32_t(height);
+      if (prepared.compacted != nullptr) {
+        const std::int64_t compacted = std::int64_t((*prepared.compacted)[i]) + change.compaction[next];
+        if (compacted < 0 || compacted > (inside ? rules::kHeightLimit : 0))
+          return Error{nameOf(change.at) + ": compacted soil below 0, above the limit or outside the world"};
+        (*prepared.compacted)[i] = std::int32_t(compacted);
+      }
+      ++next;
     }
-  // The hash is over all planes; with height as the only one, its cells are the whole.
-  const std::uint64_t hash = kernels().hashTile(prepared.height->data(), change.at.x * rules::kTileSize,
-                                                change.at.y * rules::kTileSize, int(Plane::height));
+  const PlaneCells* compacted = prepared.compacted != nullptr ? prepared.compacted.get() : tile.compacted();
+  const std::uint64_t hash =
+      planeHash(change.at, Plane::height, prepared.height.get()) + planeHash(change.at, Plane::compacted, compacted);
   if (hash != change.hash)
     return Error{nameOf(change.at) + ": hash " + hexText(hash) + " here, " + hexText(change.hash) + " announced"};
   return prepared;
@@ -200,15 +253,19 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
   } else {
     state.tiles_hash -= tileStateHash(*prepared.live);
     state.ledger.ground -= prepared.live->ground;
+    state.ledger.compacted -= prepared.live->compacted_sum;
   }
   Tile& tile = *prepared.live;
   tile.planes[int(Plane::height)] = std::move(prepared.height);
+  if (prepared.compacted != nullptr) tile.planes[int(Plane::compacted)] = std::move(prepared.compacted);
   tile.version_tick = change.new_version;
   state.tiles.setWake(tile, change.wake_mask);
   tile.hash = change.hash;
   tile.ground = kernels().sum(tile.height().data(), rules::kTileCells);
+  tile.compacted_sum = tile.compacted() == nullptr ? 0 : kernels().sum(tile.compacted()->data(), rules::kTileCells);
   state.tiles_hash += tileStateHash(tile);
   state.ledger.ground += tile.ground;
+  state.ledger.compacted += tile.compacted_sum;
 }
 
 }  // namespace
@@ -237,7 +294,11 @@ Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& u
   if (!changes) return Error{tick_name + changes.error()};
   for (const TileChange& change : *changes)
     if (change.new_version != update.tick) return Error{tick_name + nameOf(change.at) + ": is of another tick"};
+  if (update.parameters)
+    if (Status status = validateParameters(base.pack(), *update.parameters); !status)
+      return Error{tick_name + status.error()};
   if (Status status = applyTiles(state, base, *changes); !status) return Error{tick_name + status.error()};
+  if (update.parameters) state.parameters = *update.parameters;
   state.tick = update.tick;
   state.previous_poses = std::move(state.poses);
   state.poses = update.poses;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,13 +26,16 @@ struct TileChange {
   std::int32_t new_version = 0;
   WakeMask wake_mask = 0;
   std::uint64_t hash = 0;  // the tile's hash afterwards
-  // The box of changed cells within the tile, and new - old height in it, row-major. width 0: no cell changed.
+  // The box of cells that changed in any plane, within the tile, and new - old in it, row-major. width 0: none changed.
   std::uint8_t x = 0, y = 0, width = 0, height = 0;
-  std::vector<std::int32_t> difference;
+  std::vector<std::int32_t> difference;       // of heights
+  std::vector<std::int32_t> compaction = {};  // of compacted soil; empty: none changed
 };
 
-/// What leads from `before` to the tile's present heights; the box is the smallest that holds every changed cell.
-TileChange differenceOf(const Tile& tile, const PlaneCells& before, std::int32_t base_version);
+/// What leads from `before` to the tile's present cells; the box is the smallest that holds every changed cell.
+/// @param compacted_before  nullptr: 0 everywhere
+TileChange differenceOf(const Tile& tile, const PlaneCells& before, const PlaneCells* compacted_before,
+                        std::int32_t base_version);
 
 /// Canonical bytes of changes, meant to be compressed afterwards: zigzag differences split into byte planes.
 std::vector<std::uint8_t> encodeTiles(std::span<const TileChange> changes);
@@ -49,15 +53,16 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
 struct TickUpdate {
   std::int32_t tick = 0;
   std::uint64_t state_hash = 0;
-  std::vector<Pose> poses;          // of every body after this tick
-  std::vector<std::uint8_t> tiles;  // encodeTiles
+  std::vector<Pose> poses;                    // of every body after this tick
+  std::vector<std::uint8_t> tiles;            // encodeTiles
+  std::optional<Parameters> parameters = {};  // from this tick on, where they changed
 };
 
 /// Takes a state from tick - 1 to tick. Safe on untrusted content. On an error the state is untouched, but where only
 /// the state hash differs afterwards: then it has been applied and the error says both hashes.
 [[nodiscard]] Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& update);
 
-/// A whole state in bytes, meant to be compressed: tick, poses and every live tile against its base.
+/// A whole state in bytes, meant to be compressed: tick, parameters, poses and every live tile against its base.
 std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base);
 
 /// Safe on untrusted bytes.

@@ -9,10 +9,11 @@
 namespace spoor {
 namespace {
 
-CellBox grown(const CellBox& box, const ScenePack& pack) {
+/// A box of the world with `margin` cells more on every side.
+CellBox grown(const CellBox& box, int margin, const ScenePack& pack) {
   if (box.empty()) return {};
-  return {std::max(box.x0 - 1, 0), std::max(box.y0 - 1, 0), std::min(box.x1 + 1, pack.width_cells),
-          std::min(box.y1 + 1, pack.height_cells)};
+  return {std::max(box.x0 - margin, 0), std::max(box.y0 - margin, 0), std::min(box.x1 + margin, pack.width_cells),
+          std::min(box.y1 + margin, pack.height_cells)};
 }
 
 /// How many sub-steps keep every part of a body within one cell of its place a sub-step before: its own shift, and its
@@ -86,13 +87,24 @@ Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
 class Planner {
  public:
   Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-          std::span<const Pose> poses)
-      : pack_(pack), reach_q_(reach_q), state_(state), poses_(poses), placed_(poses.size()) {}
+          std::span<const Pose> poses, const Parameters& parameters)
+      : pack_(pack),
+        parameters_(parameters),
+        reach_q_(reach_q),
+        state_(state),
+        poses_(poses),
+        // A straight walk out of a body's box passes a free cell of the ring around it.
+        search_margin_(1 + (parameters.displacement == Displacement::spread ? parameters.spread_cells : 0)),
+        placed_(poses.size()) {}
 
   Result<TickPlan> plan() {
     TickPlan plan;
     plan.tick = state_.tick + 1;
-    addWoken(pack_, state_, tiles_);
+    plan.parameters = parameters_;
+    if (parameters_.active_areas == 0)
+      addTiles(wholeWorld(), tiles_);
+    else
+      addWoken(pack_, state_, tiles_);
     placeMoving(plan);
     if (tiles_.empty()) return plan;
     std::vector<std::vector<Domain>> domains;
@@ -112,6 +124,10 @@ class Planner {
   }
 
  private:
+  CellBox wholeWorld() const { return {0, 0, pack_.width_cells, pack_.height_cells}; }
+  int activeMargin() const { return search_margin_ + parameters_.active_margin_cells; }
+  CellBox activeBox(const PlacedBody& body) const { return grown(body.box, activeMargin(), pack_); }
+
   /// A body that does not move acts only where something else woke the ground; in the first tick all press.
   bool moves(std::size_t body) const { return state_.tick == 0 || poses_[body] != state_.poses[body]; }
 
@@ -124,10 +140,10 @@ class Planner {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (!moves(i)) continue;
       // Where it stood, soil that it held up may fall now.
-      addTiles(grown(placeBody(pack_, int(i), state_.poses[i]).box, pack_), tiles_);
+      addTiles(activeBox(placeBody(pack_, int(i), state_.poses[i])), tiles_);
       for (int step = 1; step <= step_count_; ++step)
         placed_[i].push_back(placeBody(pack_, int(i), interpolate(state_.poses[i], poses_[i], step, step_count_)));
-      for (const PlacedBody& body : placed_[i]) addTiles(grown(body.box, pack_), tiles_);
+      for (const PlacedBody& body : placed_[i]) addTiles(activeBox(body), tiles_);
       taking_part_.push_back(i);
     }
   }
@@ -138,7 +154,7 @@ class Planner {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (!placed_[i].empty() || !meetsTiles(roughBox(i), tiles_)) continue;
       PlacedBody body = placeBody(pack_, int(i), poses_[i]);
-      if (!meetsTiles(grown(body.box, pack_), tiles_)) continue;
+      if (!meetsTiles(activeBox(body), tiles_)) continue;
       placed_[i].push_back(std::move(body));
       taking_part_.push_back(i);
     }
@@ -151,7 +167,7 @@ class Planner {
       return std::int32_t(std::clamp<std::int64_t>(floorDiv(at_q, pack_.cell_q), 0, limit));
     };
     const Pose& pose = poses_[body];
-    const std::int64_t reach = reach_q_[body] + std::int64_t(2) * pack_.cell_q;
+    const std::int64_t reach = reach_q_[body] + std::int64_t(1 + activeMargin()) * pack_.cell_q;
     return {cellOf(pose.x_q - reach, pack_.width_cells), cellOf(pose.y_q - reach, pack_.height_cells),
             cellOf(pose.x_q + reach + pack_.cell_q, pack_.width_cells),
             cellOf(pose.y_q + reach + pack_.cell_q, pack_.height_cells)};
@@ -166,7 +182,10 @@ class Planner {
     std::vector<std::vector<Domain>> domains;
     for (int step = 0; step < step_count_; ++step) {
       std::vector<CellBox> boxes;
-      for (const std::size_t body : taking_part_) boxes.push_back(grown(placedAt(body, step).box, pack_));
+      for (const std::size_t body : taking_part_) {
+        const CellBox box = grown(placedAt(body, step).box, search_margin_, pack_);
+        boxes.push_back(parameters_.active_areas == 0 && !box.empty() ? wholeWorld() : box);
+      }
       auto joined = joinedDomains(boxes);
       if (!joined) return Error{joined.error()};
       for (const Domain& domain : *joined) addTiles(domain.box, tiles_);
@@ -182,14 +201,16 @@ class Planner {
                                                           : std::move(placed_[body][std::size_t(step)]));
     sub_step.domains = std::move(domains);
     sub_step.sweep_count =
-        (step + 1) * pack_.sweeps_per_tick / step_count_ - step * pack_.sweeps_per_tick / step_count_;
+        (step + 1) * parameters_.sweeps_per_tick / step_count_ - step * parameters_.sweeps_per_tick / step_count_;
     return sub_step;
   }
 
   const ScenePack& pack_;
+  const Parameters& parameters_;
   std::span<const std::int32_t> reach_q_;
   const WorldState& state_;
   std::span<const Pose> poses_;
+  int search_margin_;
   std::set<TileCoordinate> tiles_;
   int step_count_ = 1;
   std::vector<std::vector<PlacedBody>> placed_;  // [bodies][1, or one for each sub-step]; empty: takes no part
@@ -215,8 +236,8 @@ std::vector<std::int32_t> bodyReaches(const ScenePack& pack) {
 }
 
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-                          std::span<const Pose> poses) {
-  return Planner(pack, reach_q, state, poses).plan();
+                          std::span<const Pose> poses, const Parameters& parameters) {
+  return Planner(pack, reach_q, state, poses, parameters).plan();
 }
 
 }  // namespace spoor

@@ -18,11 +18,13 @@ struct TickEffect {
   std::int64_t active_cells = 0;       // cells of active tiles
   std::int64_t domain_cells = 0;       // cells of search domains, of all sub-steps
   std::int64_t penetrating_cells = 0;  // of all sub-steps
-  std::int64_t pairs_visited = 0;      // by the relaxation; a whole sweep visits about four per active cell
-  std::int64_t bytes_moved = 0;        // read and written by the stages, from the counts above; no cache is assumed
-  std::int64_t relax_bytes = 0;        // of these, by the relaxation
-  std::int64_t dispatches = 0;         // of compute shaders
-  std::int64_t bytes_to_device = 0;    // over the bus, where the backend has one
+  std::int64_t kept_back = 0;  // soil that bodies overlap and that found no room, or had not got out yet, at the end of
+                               // each sub-step; 0.1 mm * cells, of all sub-steps
+  std::int64_t pairs_visited = 0;    // by the relaxation; a whole sweep visits about four per active cell
+  std::int64_t bytes_moved = 0;      // read and written by the stages, from the counts above; no cache is assumed
+  std::int64_t relax_bytes = 0;      // of these, by the relaxation
+  std::int64_t dispatches = 0;       // of compute shaders
+  std::int64_t bytes_to_device = 0;  // over the bus, where the backend has one
   std::int64_t bytes_from_device = 0;
   StageTimes stage_ms{};
 };
@@ -81,16 +83,17 @@ ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const World
 
 /// What a tick did to one active tile. Where no cell changed the box is empty and the sums do not matter.
 struct TileOutcome {
-  TileChange change;  // box, and difference where it is known already
-  std::uint64_t hash = 0;
+  TileChange change;       // box, and differences where they are known already
+  std::uint64_t hash = 0;  // of all planes
   std::int64_t ground = 0;
+  std::int64_t compacted = 0;
 };
 
 /// Ends a tick: makes fresh tiles live, takes all to their new versions, hashes, sums and wake masks, and keeps the
 /// state's sums.
 /// @param outcomes  of each active tile
 /// @return          what changed: the outcomes' changes with all but their difference filled in
-std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, ActiveTiles active,
-                                   std::vector<TileOutcome> outcomes, WorldState& state);
+std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std::vector<TileOutcome> outcomes,
+                                   WorldState& state);
 
 }  // namespace spoor

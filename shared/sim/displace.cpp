@@ -38,8 +38,8 @@ void findRoom(const NativeContext& context, DomainWork& domain, int row) {
   for (int x = 0; x < domain.width(); ++x) {
     if (domain.requested[first + x] == 0) continue;
     const std::size_t at = domain.row_offset[row] + x;
-    const std::int32_t room =
-        rules::roomBeneath(context.area.height[at], context.area.underside[at], context.pack.obstacle_threshold_q);
+    const std::int32_t room = rules::roomBeneath(context.area.height[at], context.area.underside[at],
+                                                 context.parameters.obstacle_threshold_q);
     domain.room[first + x] = domain.requested[first + x] <= room ? DomainWork::kRoomForAll : room;
   }
 }
@@ -77,7 +77,7 @@ void giveToTargets(const NativeContext& context, DomainWork& domain, int row, st
 
 }  // namespace
 
-void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step) {
+std::int64_t runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step) {
   const int task_rows = rowsPerTask(domain.width());
   domain.requested.resize(std::max(domain.requested.size(), domain.overlap.size()));
   domain.granted.resize(domain.requested.size());
@@ -100,6 +100,7 @@ void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t 
   forEachRow([&](int row) {
     if (domain.receives[row] != 0) giveToTargets(context, domain, row, step);
   });
+  return 0;
 }
 
 }  // namespace spoor

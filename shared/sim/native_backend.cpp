@@ -41,13 +41,13 @@ class NativeBackend final : public Backend {
   Result<TickEffect> settle(WorldState& state) override {
     SPOOR_ASSERT(submitted_.has_value());
     const auto [plan, base] = *std::exchange(submitted_, std::nullopt);
-    const NativeContext context{base->pack(), *kernels_, pool_, area_};
+    const NativeContext context{base->pack(), plan.parameters, *kernels_, pool_, area_};
     TickEffect effect;
     ActiveTiles active;
     {
       StageTimer timer(effect.stage_ms, Stage::active);
       active = takeTiles(plan, *base, state, pool_);
-      area_.gather(active.tiles, pool_);
+      area_.gather(active.tiles, plan.parameters.compression_q16 > 0, pool_);
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
     effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
@@ -58,7 +58,7 @@ class NativeBackend final : public Backend {
     }
     {
       StageTimer timer(effect.stage_ms, Stage::hash);
-      effect.changes = commitTick(plan, base->pack().sweeps_per_tick, std::move(active), runHash(context), state);
+      effect.changes = commitTick(plan, std::move(active), runHash(context), state);
     }
     return effect;
   }
@@ -112,7 +112,7 @@ class NativeBackend final : public Backend {
         runNearest(context, domain);
       }
       StageTimer timer(effect.stage_ms, Stage::displace);
-      runDisplace(context, domain, step);
+      effect.kept_back += runDisplace(context, domain, step);
     }
     StageTimer timer(effect.stage_ms, Stage::relax);
     const std::int64_t pairs = runRelax(context, sweep, sub_step.sweep_count, skip_settled_);

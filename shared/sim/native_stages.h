@@ -13,6 +13,7 @@ namespace spoor {
 /// What the native stages of one backend work with.
 struct NativeContext {
   const ScenePack& pack;
+  const Parameters& parameters;
   const Kernels& kernels;
   ThreadPool& pool;
   WorkArea& area;
@@ -55,8 +56,9 @@ void runPenetration(const NativeContext& context, DomainWork& domain);
 /// Stage nearest: fills target for penetrating cells, and receives. Only where penetrating_count > 0.
 void runNearest(const NativeContext& context, DomainWork& domain);
 
-/// Stage displace: moves the soil; marks changed segments with `step`. Only after runNearest.
-void runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step);
+/// Stage displace: moves the soil; marks changed segments with `step`. Only after runNearest, which it may run again.
+/// Returns what it left where bodies are (TickEffect::kept_back).
+std::int64_t runDisplace(const NativeContext& context, DomainWork& domain, std::int32_t step);
 
 /// Stage relax: `sweep_count` sweeps over all active tiles, the first of them being number `first_sweep` of this tick.
 /// Returns the pairs of cells visited.

@@ -22,7 +22,8 @@ void runPenetration(const NativeContext& context, DomainWork& domain) {
       const std::size_t from = domain.row_offset[row];
       domain.penetrating_in_row[row] = context.kernels.overlap(
           context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,
-          domain.width(), context.pack.obstacle_threshold_q, domain.overlap.data() + std::size_t(row) * domain.width());
+          domain.width(), context.parameters.obstacle_threshold_q,
+          domain.overlap.data() + std::size_t(row) * domain.width());
     }
   });
   domain.penetrating_count = std::accumulate(domain.penetrating_in_row.begin(), domain.penetrating_in_row.end(), 0);

@@ -29,7 +29,8 @@ struct PlacedBody {
   std::vector<rules::RasterPoint> points;
 };
 
-/// A rectangle in which displaced soil finds its targets: joined boxes of bodies, grown by one cell.
+/// A rectangle in which displaced soil finds its targets: joined boxes of bodies, grown by one cell and by what spread
+/// displacement reaches; without active areas the whole world.
 struct Domain {
   CellBox box;
   std::vector<int> bodies;  // indices into SubStep::bodies
@@ -45,6 +46,7 @@ struct SubStep {
 /// What a tick simulates. A function of state and input, never of batching (DESIGN.md, "Active").
 struct TickPlan {
   std::int32_t tick = 0;
+  Parameters parameters;
   std::vector<TileCoordinate> active;  // in (y, x) order
   std::vector<SubStep> sub_steps;      // none where nothing is active
   bool too_fast = false;  // a body moves farther than one cell per sub-step, at the most sub-steps there are
@@ -59,13 +61,14 @@ PlacedBody placeBody(const ScenePack& pack, int body_index, const Pose& pose);
 std::vector<std::int32_t> bodyReaches(const ScenePack& pack);
 
 // What a tick may ask for. Far beyond real time; a bound for what bytes from outside can make a machine do.
-inline constexpr std::int64_t kDomainSideLimit = 1 << 14;   // cells; also what rules/nearest.h can search
-inline constexpr std::int64_t kDomainCellsLimit = 1 << 24;  // of one domain
+inline constexpr std::int64_t kDomainSideLimit = kWholeWorldSideLimit;    // cells; also what rules/nearest.h can search
+inline constexpr std::int64_t kDomainCellsLimit = kWholeWorldCellsLimit;  // of one domain
 
 /// Stage active: which tiles and bodies take part in the tick that leads from `state` to the given poses (valid).
-/// @param reach_q  bodyReaches
+/// @param reach_q     bodyReaches
+/// @param parameters  of this tick (valid)
 /// Errors: touching bodies join to a domain over the limits, or more than kTickTilesLimit tiles are active.
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-                          std::span<const Pose> poses);
+                          std::span<const Pose> poses, const Parameters& parameters);
 
 }  // namespace spoor

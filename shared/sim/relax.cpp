@@ -99,7 +99,8 @@ class Relaxation {
 
   /// May an underside limit what this segment's cells take?
   bool covered(std::size_t segment) const {
-    return std::int64_t(area_.lowest_underside[segment]) <= std::int64_t(highest_) + context_.pack.obstacle_threshold_q;
+    return std::int64_t(area_.lowest_underside[segment]) <=
+           std::int64_t(highest_) + context_.parameters.obstacle_threshold_q;
   }
 
   std::int32_t lastChangeOfRow(int row) const {
@@ -134,11 +135,11 @@ class Relaxation {
         const int pairs = kSize / 2 - (parity == 1 && !reaches_next ? 1 : 0);
         const std::size_t at = cells + std::size_t(tile * kSize + parity);
         const bool beneath = covered(segment) || (reaches_next && covered(segment + 1));
-        const int threshold = context_.pack.slope_threshold_q;
+        const int threshold = rules::exchangeThreshold(context_.parameters.slope_threshold_q);
         const bool moved =
             beneath
                 ? context_.kernels.exchangeWithinBeneath(&area_.height[at], &area_.bedrock[at], &area_.underside[at],
-                                                         pairs, threshold, context_.pack.obstacle_threshold_q)
+                                                         pairs, threshold, context_.parameters.obstacle_threshold_q)
                 : context_.kernels.exchangeWithin(&area_.height[at], &area_.bedrock[at], pairs, threshold);
         visited += pairs;
         if (!moved) continue;
@@ -188,12 +189,13 @@ class Relaxation {
     if (skip_settled_ && settled(segment_a, step) && settled(first_b, step) && settled(last_b, step)) return 0;
     const std::size_t a = run_a.rowOffset(row_a % kSize) + std::size_t(x - run_a.x0());
     const std::size_t b = run_b.rowOffset(row_b % kSize) + std::size_t(x + shift - run_b.x0());
-    const int threshold = shift == 0 ? context_.pack.slope_threshold_q : context_.pack.diagonal_threshold_q;
+    const int threshold = rules::exchangeThreshold(shift == 0 ? context_.parameters.slope_threshold_q
+                                                              : context_.parameters.diagonal_threshold_q);
     const bool beneath = covered(segment_a) || covered(first_b) || covered(last_b);
     const bool moved =
         beneath ? context_.kernels.exchangeRowsBeneath(&area_.height[a], &area_.height[b], &area_.bedrock[a],
                                                        &area_.bedrock[b], &area_.underside[a], &area_.underside[b],
-                                                       count, threshold, context_.pack.obstacle_threshold_q)
+                                                       count, threshold, context_.parameters.obstacle_threshold_q)
                 : context_.kernels.exchangeRows(&area_.height[a], &area_.height[b], &area_.bedrock[a],
                                                 &area_.bedrock[b], count, threshold);
     if (moved) {

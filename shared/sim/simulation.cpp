@@ -14,23 +14,26 @@ Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_pt
   backend_->forget();
 }
 
-Result<TickResult> Simulation::step(std::span<const Pose> poses) {
-  if (Status status = begin(poses); !status) return Error{status.error()};
+Result<TickResult> Simulation::step(std::span<const Pose> poses, const std::optional<Parameters>& parameters) {
+  if (Status status = begin(poses, parameters); !status) return Error{status.error()};
   return finish();
 }
 
-Status Simulation::begin(std::span<const Pose> poses) {
+Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters) {
   SPOOR_ASSERT(inFlight() < kTicksInFlight);
   if (Status status = validatePoses(base_->pack(), poses); !status) return status;
+  if (parameters)
+    if (Status status = validateParameters(base_->pack(), *parameters); !status) return status;
   if (Status status = settle(); !status) return status;
   TickResult result;
   Result<TickPlan> plan = [&] {
     StageTimer timer(result.effect.stage_ms, Stage::active);
-    return planTick(base_->pack(), reach_q_, state_, poses);
+    return planTick(base_->pack(), reach_q_, state_, poses, parameters.value_or(state_.parameters));
   }();
   if (!plan) return Error{plan.error()};
   result.update.tick = plan->tick;
   result.update.poses.assign(poses.begin(), poses.end());
+  result.update.parameters = parameters;
   result.too_fast = plan->too_fast;
   if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status)
     return failure_.emplace(Error{status.error()});
@@ -48,6 +51,7 @@ Status Simulation::settle() {
   for (int stage = 0; stage < kStageCount; ++stage) effect->stage_ms[stage] += result.effect.stage_ms[stage];
   result.effect = std::move(*effect);
   state_.tick = result.update.tick;
+  if (result.update.parameters) state_.parameters = *result.update.parameters;
   state_.previous_poses = std::exchange(state_.poses, result.update.poses);
   result.ledger = state_.ledger;
   {

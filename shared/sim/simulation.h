@@ -26,13 +26,15 @@ class Simulation {
   Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend);
 
   /// Runs one tick that takes the bodies to `poses`: begin() and finish().
-  Result<TickResult> step(std::span<const Pose> poses);
+  Result<TickResult> step(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {});
 
   /// The first half: plans the tick and hands it to the backend. Where that computes on a device, this may return long
   /// before the device is done: time to finish the tick before. Two ticks may be begun and not finished (asserted).
-  /// Errors, which leave the state untouched: poses that validatePoses refuses, a tick that planTick finds too large.
-  /// Errors after which the session cannot go on: a device that is lost or has not the memory.
-  [[nodiscard]] Status begin(std::span<const Pose> poses);
+  /// @param parameters  from this tick on, where they change. They wake nothing: soil at rest stays until it is
+  /// reached. Errors, which leave the state untouched: poses or parameters that validatePoses and validateParameters
+  /// refuse, a tick that planTick finds too large. Errors after which the session cannot go on: a device that is lost
+  /// or has not the memory.
+  [[nodiscard]] Status begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {});
 
   /// The second half, of the oldest tick begun (asserted): waits for it, and encodes what it changed.
   /// Errors: the device is lost; the session cannot go on, and every later call says so again.

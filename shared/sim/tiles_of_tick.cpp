@@ -38,9 +38,9 @@ ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const World
   return active;
 }
 
-std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, ActiveTiles active,
-                                   std::vector<TileOutcome> outcomes, WorldState& state) {
-  const int reach = std::clamp(sweeps_per_tick, 1, kSize);
+std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std::vector<TileOutcome> outcomes,
+                                   WorldState& state) {
+  const int reach = std::clamp(plan.parameters.sweeps_per_tick, 1, kSize);
   std::vector<TileChange> changes;
   auto next_fresh = active.fresh.begin();
   for (std::size_t i = 0; i < active.tiles.size(); ++i) {
@@ -52,18 +52,21 @@ std::vector<TileChange> commitTick(const TickPlan& plan, int sweeps_per_tick, Ac
     if (!changed && !is_new && tile.wake_mask == 0) continue;
     const std::uint64_t hash_before = is_new ? 0 : tileStateHash(tile);
     const std::int64_t ground_before = is_new ? 0 : tile.ground;
+    const std::int64_t compacted_before = tile.compacted_sum;
     change.at = tile.at;
     change.base_version = is_new ? kDormantVersion : tile.version_tick;
     change.new_version = tile.version_tick = plan.tick;
     if (changed) {
       tile.hash = outcomes[i].hash;
       tile.ground = outcomes[i].ground;
+      tile.compacted_sum = outcomes[i].compacted;
     }
     change.hash = tile.hash;
     change.wake_mask = wakeMaskOf(change, reach);
     state.tiles.setWake(tile, change.wake_mask);
     state.tiles_hash += tileStateHash(tile) - hash_before;
     state.ledger.ground += tile.ground - ground_before;
+    state.ledger.compacted += tile.compacted_sum - compacted_before;
     if (is_new) state.ledger.initial += tile.initial;
     changes.push_back(std::move(change));
   }

@@ -24,7 +24,7 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
 
 }  // namespace
 
-void WorkArea::gather(const std::vector<Tile*>& active, ThreadPool& pool) {
+void WorkArea::gather(const std::vector<Tile*>& active, bool compacts, ThreadPool& pool) {
   tiles = active;
   const int count = int(tiles.size());
   runs.clear();
@@ -48,6 +48,7 @@ void WorkArea::gather(const std::vector<Tile*>& active, ThreadPool& pool) {
   height.resize(cells);
   bedrock.resize(cells);
   underside.resize(cells);
+  compacted.assign(compacts ? cells : 0, 0);
   lowest_underside.resize(segments);
   last_change.assign(segments, 0);
   pool.forEach(count, [&](int i, int) {
@@ -56,6 +57,8 @@ void WorkArea::gather(const std::vector<Tile*>& active, ThreadPool& pool) {
       const std::size_t to = run.rowOffset(row) + std::size_t((tiles[i]->at.x - run.first.x) * kSize);
       std::memcpy(height.data() + to, tiles[i]->height().data() + row * kSize, kSize * sizeof(std::int32_t));
       std::memcpy(bedrock.data() + to, tiles[i]->bedrock->data() + row * kSize, kSize * sizeof(std::int32_t));
+      if (compacts && tiles[i]->compacted() != nullptr)
+        std::memcpy(compacted.data() + to, tiles[i]->compacted()->data() + row * kSize, kSize * sizeof(std::int32_t));
     }
   });
 }

@@ -39,11 +39,12 @@ struct WorkArea {
   std::vector<Band> bands;                               // in y order
   std::vector<int> run_of_tile;                          // [tiles]
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
+  std::vector<std::int32_t> compacted;                   // [cells] where the tick compacts, else empty
   std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
 
-  /// Lays out the cells of active tiles, which come in (y, x) order.
-  void gather(const std::vector<Tile*>& active, ThreadPool& pool);
+  /// Lays out the cells of active tiles, which come in (y, x) order; those of `compacted` only where asked for.
+  void gather(const std::vector<Tile*>& active, bool compacts, ThreadPool& pool);
 
   /// The run that holds a cell. It must be active (asserted).
   const Run& runAt(std::int32_t x, std::int32_t y) const;

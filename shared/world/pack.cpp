@@ -12,7 +12,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x50525053;  // "SPRP"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kListLimit = 4096;         // meshes, paths, bodies
 constexpr std::size_t kWaypointLimit = 1 << 16;  // of a path
 constexpr std::size_t kWorkLimit = 1 << 24;  // vertices, triangles and edges, over all bodies: a tick visits them all
@@ -128,10 +128,8 @@ void visitScalars(Pack& pack, Visit visit) {
   visit(pack.ticks_per_second);
   visit(pack.default_ticks);
   visit(pack.soil_depth_q);
-  visit(pack.obstacle_threshold_q);
-  visit(pack.slope_threshold_q);
-  visit(pack.diagonal_threshold_q);
-  visit(pack.sweeps_per_tick);
+  visit(pack.patches_per_row);
+  visit(pack.normal_blur_passes);
   visit(pack.noise.seed);
   visit(pack.noise.lattice_step_q32);
   visit(pack.noise.octaves);
@@ -193,10 +191,9 @@ Status validatePack(const ScenePack& pack) {
   SPOOR_CHECK_RANGE(pack.ticks_per_second, 1, 1000);
   SPOOR_CHECK_RANGE(pack.default_ticks, 1, 1 << 30);
   SPOOR_CHECK_RANGE(pack.soil_depth_q, 0, kSoilLimit);
-  SPOOR_CHECK_RANGE(pack.obstacle_threshold_q, 0, kGroundLimit);
-  SPOOR_CHECK_RANGE(pack.slope_threshold_q, 1, kGroundLimit);
-  SPOOR_CHECK_RANGE(pack.diagonal_threshold_q, 1, kGroundLimit);
-  SPOOR_CHECK_RANGE(pack.sweeps_per_tick, 0, 64);
+  SPOOR_CHECK_RANGE(pack.patches_per_row, 0, 4096);
+  SPOOR_CHECK_RANGE(pack.normal_blur_passes, 0, 16);
+  if (Status status = validateParameters(pack, pack.parameters); !status) return Error{"pack: " + status.error()};
   if (Status base = validateBase(pack); !base) return base;
   if (pack.meshes.size() > kListLimit || pack.paths.size() > kListLimit || pack.bodies.size() > kListLimit)
     return Error{"pack: more than 4096 meshes, paths or bodies"};
@@ -216,6 +213,17 @@ Status validatePack(const ScenePack& pack) {
   return {};
 }
 
+Status validateParameters(const ScenePack& pack, const Parameters& parameters) {
+  if (Status status = validateParameters(parameters); !status) return status;
+  const std::int64_t cells = std::int64_t(pack.width_cells) * pack.height_cells;
+  if (parameters.active_areas == 0 && (pack.width_cells > kWholeWorldSideLimit ||
+                                       pack.height_cells > kWholeWorldSideLimit || cells > kWholeWorldCellsLimit))
+    return Error{"parameters: active_areas is 0 in a world of " + std::to_string(pack.width_cells) + " x " +
+                 std::to_string(pack.height_cells) + " cells; all of it can be simulated up to " +
+                 std::to_string(kWholeWorldCellsLimit) + " cells, " + std::to_string(kWholeWorldSideLimit) + " a side"};
+  return {};
+}
+
 std::vector<std::uint8_t> encodePack(const ScenePack& pack) {
   SPOOR_ASSERT(validatePack(pack));
   ByteWriter writer;
@@ -223,6 +231,7 @@ std::vector<std::uint8_t> encodePack(const ScenePack& pack) {
   writer.put(kVersion);
   writer.putText(pack.name);
   visitScalars(pack, [&](auto value) { writer.put(value); });
+  putParameters(writer, pack.parameters);
   writer.put(std::uint8_t(pack.base_kind));
   writer.put(std::uint32_t(pack.samples.height_q.size()));
   writer.putAll(std::span<const std::int32_t>(pack.samples.height_q));
@@ -264,6 +273,7 @@ Result<ScenePack> decodePack(std::span<const std::uint8_t> bytes) {
   ScenePack pack;
   pack.name = reader.getText();
   visitScalars(pack, get);
+  pack.parameters = getParameters(reader);
   pack.base_kind = BaseKind(reader.get<std::uint8_t>());
   pack.samples.height_q = reader.getAll<std::int32_t>(reader.get<std::uint32_t>());
   for (auto count = getCount(); count > 0 && !reader.failed(); --count) {

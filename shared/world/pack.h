@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/base/result.h"
+#include "shared/world/parameters.h"
 #include "shared/world/pose.h"
 
 namespace spoor {
@@ -85,12 +86,12 @@ struct ScenePack {
   std::int32_t height_cells = 0;
   std::int32_t cell_q = 0;  // side of a cell, 0.1 mm, 1 .. 10^6; width_cells * cell_q < 2^31
   std::int32_t ticks_per_second = 60;
-  std::int32_t default_ticks = 600;       // length of a session when nobody says otherwise
-  std::int32_t soil_depth_q = 0;          // soil over bedrock, 0.1 mm, >= 0
-  std::int32_t obstacle_threshold_q = 0;  // >= 0
-  std::int32_t slope_threshold_q = 1;     // height difference of side neighbours that rests, >= 1
-  std::int32_t diagonal_threshold_q = 1;  // the same for diagonal neighbours, >= 1
-  std::int32_t sweeps_per_tick = 10;      // 0..64, shared out over the tick's sub-steps
+  std::int32_t default_ticks = 600;     // length of a session when nobody says otherwise
+  std::int32_t soil_depth_q = 0;        // soil over bedrock, 0.1 mm, >= 0
+  std::int32_t patches_per_row = 0;     // of the terrain as it is drawn, 0..4096; 0: as the client likes
+                                        // [numVerticesPerRow]
+  std::int32_t normal_blur_passes = 0;  // 0..16, of the 3 x 3 Gaussian over drawn normals [numIterationsBlurNormals]
+  Parameters parameters;                // at first; a session may change them
   BaseKind base_kind = BaseKind::noise;
   NoiseBase noise;     // where base_kind is noise, else as made
   SampleBase samples;  // where base_kind is samples, else as made
@@ -100,10 +101,17 @@ struct ScenePack {
 };
 
 inline constexpr std::int32_t kWorldCellsLimit = 1 << 24;
+// What a world without active areas may measure.
+inline constexpr std::int32_t kWholeWorldSideLimit = 1 << 14;
+inline constexpr std::int64_t kWholeWorldCellsLimit = 1 << 24;
 inline constexpr std::size_t kPackBytesLimit = std::size_t(256) << 20;
 
 /// Checks every value's range and every index. The error names the field.
 [[nodiscard]] Status validatePack(const ScenePack& pack);
+
+/// Checks parameters for a session of this pack: every value's range, and that a world without active areas is small
+/// enough. The error names the field.
+[[nodiscard]] Status validateParameters(const ScenePack& pack, const Parameters& parameters);
 
 /// The canonical bytes. The pack must be valid (asserted).
 std::vector<std::uint8_t> encodePack(const ScenePack& pack);

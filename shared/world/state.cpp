@@ -26,6 +26,7 @@ std::uint64_t stateHash(const WorldState& state) {
   writer.put(state.tick);
   writer.put(state.pack_id.low);
   writer.put(state.pack_id.high);
+  putParameters(writer, state.parameters);
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
@@ -35,6 +36,7 @@ std::uint64_t stateHash(const WorldState& state) {
 WorldState initialState(const PackId& id, const BaseTerrain& base) {
   WorldState state;
   state.pack_id = id;
+  state.parameters = base.pack().parameters;
   state.poses = Script(base).poses(0);
   state.previous_poses = state.poses;
   return state;
@@ -48,6 +50,8 @@ bool recount(const WorldState& state) {
     tiles_hash += tileStateHash(*tile);
     ledger.initial += tile->initial;
     ledger.ground += std::accumulate(tile->height().begin(), tile->height().end(), std::int64_t(0));
+    if (const PlaneCells* compacted = tile->compacted())
+      ledger.compacted += std::accumulate(compacted->begin(), compacted->end(), std::int64_t(0));
   }
   return tiles_hash == state.tiles_hash && ledger == state.ledger;
 }

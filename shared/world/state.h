@@ -11,6 +11,7 @@ namespace spoor {
 struct WorldState {
   std::int32_t tick = 0;  // ticks completed
   PackId pack_id;
+  Parameters parameters;
   std::vector<Pose> poses;           // of every body of the pack, after `tick`
   std::vector<Pose> previous_poses;  // and one tick earlier
   TileStore tiles;

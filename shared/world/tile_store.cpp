@@ -80,16 +80,26 @@ std::vector<const Tile*> TileStore::sorted() const {
 }
 
 std::size_t TileStore::memoryBytes() const {
-  return tiles_.size() * (sizeof(Tile) + (kPlaneCount + 1) * sizeof(PlaneCells) + 4 * sizeof(void*)) +
+  std::size_t compacted = 0;
+  for (const auto& [key, tile] : tiles_) compacted += tile->compacted() != nullptr ? 1 : 0;
+  return tiles_.size() * (sizeof(Tile) + 2 * sizeof(PlaneCells) + 4 * sizeof(void*)) + compacted * sizeof(PlaneCells) +
          tiles_.bucket_count() * sizeof(void*);
 }
 
+PlaneCells& Tile::makeCompacted() {
+  auto& plane = planes[int(Plane::compacted)];
+  if (plane == nullptr) plane = std::make_unique<PlaneCells>();
+  return *plane;
+}
+
+std::uint64_t planeHash(TileCoordinate at, Plane plane, const PlaneCells* cells) {
+  if (cells == nullptr) return 0;
+  const auto hash = plane == Plane::height ? kernels().hashTile : kernels().hashSparseTile;
+  return hash(cells->data(), at.x * rules::kTileSize, at.y * rules::kTileSize, int(plane));
+}
+
 std::uint64_t tileHash(const Tile& tile) {
-  std::uint64_t sum = 0;
-  for (int plane = 0; plane < kPlaneCount; ++plane)
-    sum += kernels().hashTile(tile.planes[plane]->data(), tile.at.x * rules::kTileSize, tile.at.y * rules::kTileSize,
-                              plane);
-  return sum;
+  return planeHash(tile.at, Plane::height, &tile.height()) + planeHash(tile.at, Plane::compacted, tile.compacted());
 }
 
 std::uint64_t tileStateHash(const Tile& tile) {

@@ -10,8 +10,8 @@
 namespace spoor {
 
 /// Named layers of a tile. Store, deltas, snapshots and hashes are written over a set of them.
-enum class Plane : std::uint8_t { height = 0 };
-inline constexpr int kPlaneCount = 1;
+enum class Plane : std::uint8_t { height = rules::kHeightPlane, compacted = rules::kCompactedPlane };
+inline constexpr int kPlaneCount = 2;
 
 /// Bits of a wake mask: which tiles a changed tile keeps active in the next tick. Bit (dy + 1) * 3 + (dx + 1); the tile
 /// itself is bit 4. 0: asleep.
@@ -24,7 +24,7 @@ using PlaneCells = std::array<std::int32_t, rules::kTileCells>;
 /// A live tile. Everything but `planes`, `version_tick` and `wake_mask` is derived and kept for speed.
 struct Tile {
   TileCoordinate at;
-  std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // height is always there
+  std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // height is always there; others once not 0 everywhere
   std::unique_ptr<PlaneCells> bedrock;
   std::int32_t version_tick = 0;  // the tick at which it last changed, or became live
   WakeMask wake_mask = 0;         // set by TileStore::setWake
@@ -32,9 +32,15 @@ struct Tile {
   std::uint64_t hash = 0;         // sum of its cells' hashes; cells outside the world count too
   std::int64_t ground = 0;        // sum of its heights, 0.1 mm * cells
   std::int64_t initial = 0;       // the same when it became live
+  std::int64_t compacted_sum = 0;
 
   PlaneCells& height() { return *planes[int(Plane::height)]; }
   const PlaneCells& height() const { return *planes[int(Plane::height)]; }
+  /// Soil that was pressed together in each cell, >= 0, 0.1 mm; nullptr: none anywhere.
+  PlaneCells* compacted() { return planes[int(Plane::compacted)].get(); }
+  const PlaneCells* compacted() const { return planes[int(Plane::compacted)].get(); }
+  /// The same, made where it was not there.
+  PlaneCells& makeCompacted();
 };
 
 /// Sums over live tiles, 0.1 mm * cells. Balanced where error() is 0.
@@ -79,6 +85,8 @@ class TileStore {
   std::vector<Tile*> awake_;
 };
 
+/// Sum of the hashes of the cells of one plane of the tile at `at`; nullptr: 0 everywhere.
+std::uint64_t planeHash(TileCoordinate at, Plane plane, const PlaneCells* cells);
 /// Sum of the hashes of a tile's cells over all planes, from the cells.
 std::uint64_t tileHash(const Tile& tile);
 /// What a tile adds to the state hash: its cells, that it is live, and its wake mask.

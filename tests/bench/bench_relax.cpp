@@ -47,7 +47,7 @@ void measureScene(const Settings& settings, const BenchScene& scene, Report& rep
   std::fprintf(stderr, "measuring the relaxation of %s, %zu schedules in turns ...\n", scene.pack.name.c_str(),
                lineup.engines.size());
   std::vector<Series> runs = runTogether(scene, lineup.engines, settings.tick_count);
-  std::printf("%s, %d sweeps a tick, %zu ticks\n", scene.pack.name.c_str(), scene.pack.sweeps_per_tick,
+  std::printf("%s, %d sweeps a tick, %zu ticks\n", scene.pack.name.c_str(), scene.pack.parameters.sweeps_per_tick,
               runs.front().tick_ms.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].label = lineup.labels[i];

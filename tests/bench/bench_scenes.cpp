@@ -30,9 +30,9 @@ ScenePack emptyScene(const std::string& name, std::int32_t cells) {
   pack.width_cells = pack.height_cells = cells;
   pack.cell_q = kCell_q;
   pack.soil_depth_q = 10000;
-  pack.obstacle_threshold_q = 10;
-  pack.slope_threshold_q = 350;
-  pack.diagonal_threshold_q = 494;
+  pack.parameters.obstacle_threshold_q = 10;
+  pack.parameters.slope_threshold_q = 350;
+  pack.parameters.diagonal_threshold_q = 494;
   pack.noise = {1, std::int64_t(1) << 24, 2, 0, 20000};
   return pack;
 }
@@ -138,7 +138,8 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
         const std::int64_t x = tile_x * rules::kTileSize + i % rules::kTileSize - middle;
         const std::int64_t y = tile_y * rules::kTileSize + i / rules::kTileSize - middle;
         const std::int64_t slope_length = radius - std::int64_t(isqrt(std::uint64_t(x * x + y * y)));
-        const std::int64_t added_q = 2 * scene.pack.slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
+        const std::int64_t added_q =
+            2 * scene.pack.parameters.slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
         tile->height()[std::size_t(i)] += std::int32_t(added_q);
         tile->ground += added_q;
       }

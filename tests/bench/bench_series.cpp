@@ -61,7 +61,8 @@ class Runner {
     for (int stage = 0; stage < kStageCount; ++stage) series_.stage_ms[stage].push_back(effect.stage_ms[stage]);
     const double relax_ms = effect.stage_ms[int(Stage::relax)];
     if (effect.active_cells > 0 && relax_ms > 0)
-      series_.relax_rate.push_back(double(effect.active_cells) * scene_->pack.sweeps_per_tick / relax_ms / 1e3);
+      series_.relax_rate.push_back(double(effect.active_cells) * scene_->pack.parameters.sweeps_per_tick / relax_ms /
+                                   1e3);
     series_.dispatches.push_back(effect.dispatches);
     series_.domain_cells += effect.domain_cells;
     series_.active_cells += effect.active_cells;
