@@ -29,10 +29,17 @@ struct TickEffect {
   StageTimes stage_ms{};
 };
 
+/// One buffer, or several of one purpose.
+struct BufferBytes {
+  std::string name;
+  std::int64_t bytes = 0;
+};
+
 /// Bytes that a backend holds besides the state.
 struct BackendMemory {
   std::int64_t host_bytes = 0;
   std::int64_t device_bytes = 0;
+  std::vector<BufferBytes> buffers;  // what most of them are for, on the device where there is one
 };
 
 /// Runs stages 4 to 9 of planned ticks, on one state until forget(). A tick goes through three calls, in their order,

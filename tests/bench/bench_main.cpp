@@ -15,10 +15,9 @@ struct Measurement {
   void (*measure)(const Settings&, Report&);
   bool on_gl_only;
 };
-constexpr Measurement kMeasurements[] = {{"tick", measureTicks, false},
-                                         {"relax", measureRelax, false},
-                                         {"areas", measureAreas, false},
-                                         {"world", measureWorlds, false},
+constexpr Measurement kMeasurements[] = {{"tick", measureTicks, false},        {"relax", measureRelax, false},
+                                         {"areas", measureAreas, false},       {"world", measureWorlds, false},
+                                         {"thesis", measureThesis, false},     {"errors", measureErrors, false},
                                          {"bandwidth", measureBandwidth, true}};
 
 /// The command line, as it is written.
@@ -33,9 +32,10 @@ Arguments parse(int argc, char** argv) {
   Arguments arguments;
   Options options("spoor-bench", "times of the pipeline, checked by hash");
   options.addPlain(
-      "tick|relax|areas|world|bandwidth",
+      "tick|relax|areas|world|thesis|errors|bandwidth",
       "a whole tick by stages; sweeps by schedules; the same cells in 1 to 8 areas; a car in a small and a "
-      "large world; how fast the device copies [tick]",
+      "large world; the tables of Persson's thesis; errors of the ways to choose from beside their speed; how fast the "
+      "device copies [tick]",
       &arguments.what, 1);
   options.add("scene", "NAME|PACK",
               "a scene of the benchmark or a pack, for tick (else car491, slab491) and relax "
@@ -43,7 +43,8 @@ Arguments parse(int argc, char** argv) {
               &arguments.scene);
   options.add("backend", "NAME", "native, gl (native runs beside it and must give the same hashes), or auto",
               &arguments.backend);
-  options.add("ticks", "N", "ticks of each run; areas runs 60 at most", &arguments.tick_count, 2, 1000000);
+  options.add("ticks", "N", "ticks of each run; areas runs 60 at most, thesis 5000 for its sums", &arguments.tick_count,
+              2, 1000000);
   options.add("threads", "N", "0: one for each processor", &arguments.thread_count, 0, 256);
   options.addFlag("every-pair", "visit settled pairs too", &arguments.every_pair);
   options.add("schedule", "NAME", "gl: sweeps plain (a dispatch each matching), fused (one a sweep), or auto",
@@ -60,7 +61,7 @@ Arguments parse(int argc, char** argv) {
 /// What is wrong with the arguments together, which Options cannot see.
 Status check(const Arguments& arguments, const Measurement* measurement) {
   if (measurement == nullptr)
-    return Error{"'" + arguments.what.front() + "' is none of tick, relax, areas, world, bandwidth"};
+    return Error{"'" + arguments.what.front() + "' is none of tick, relax, areas, world, thesis, errors, bandwidth"};
   const std::set<std::string> schedules{"auto", "plain", "fused"}, backends{"auto", "gl", "native"};
   if (schedules.count(arguments.schedule) == 0)
     return Error{"--schedule: '" + arguments.schedule + "' is none of auto, plain, fused"};

@@ -45,8 +45,15 @@ void measureRelax(const Settings& settings, Report& report);
 void measureAreas(const Settings& settings, Report& report);
 /// One car on level ground in a small and in a large world.
 void measureWorlds(const Settings& settings, Report& report);
+/// The thesis's Tables 4.5, 4.6, 5.4 to 5.7 and 5.9 and the sweeps of its figures 5.6 and 5.7, beside its own numbers.
+void measureThesis(const Settings& settings, Report& report);
+/// Errors beside speed: of each way to find the nearest free cell, and of each rule that evens out slopes.
+void measureErrors(const Settings& settings, Report& report);
 /// The device's copy bandwidth.
 void measureBandwidth(const Settings& settings, Report& report);
+
+/// Table 5.9: the volume of a whole world over 5000 ticks; the thesis's way, and with active areas and compaction.
+void measureVolume(const Settings& settings, Report& report);
 
 /// A scene of the benchmark, or a pack file.
 BenchScene loadScene(const std::string& name);

@@ -127,6 +127,31 @@ ScenePack areasScene(const std::string& name, const PlateSize& plate) {
   return pack;
 }
 
+constexpr double kCarLength_m = 24;
+constexpr std::int32_t kCarDistance_q = 300000;
+constexpr std::int32_t kCarSpeed_q = 488;  // per tick
+
+Parameters thesisParameters() {
+  Parameters parameters;
+  parameters.nearest = NearestSearch::jump_flooding;
+  parameters.roughness_q16 = kOneQ16 / 2;
+  parameters.obstacle_threshold_q = 1000;
+  parameters.capacity_rounds = 1;
+  return parameters;
+}
+
+/// The car's mesh: footprints of 1 x 0.6 m at the corners of a rectangle of 5 x 2 m, and the roof 8 m above.
+Mesh thesisCar(std::int32_t cell_q) {
+  // A little less than the area: the search domain adds a cell on every side.
+  const auto reach = std::int32_t(kCarLength_m * rules::kUnitsPerMetre / 2) - cell_q - 100;
+  Mesh mesh;
+  addBox(mesh, {-reach, -reach, 80000}, {reach, reach, 84000});
+  for (const int x : {-1, 1})
+    for (const int y : {-1, 1})
+      addBox(mesh, {x * 25000 - 5000, y * 10000 - 3000, 0}, {x * 25000 + 5000, y * 10000 + 3000, 80000});
+  return mesh;
+}
+
 /// Heaps a cone of soil on a state's ground and wakes the tiles that it covers.
 void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state) {
   const std::int32_t radius = scene.cone_radius_cells, middle = scene.pack.width_cells / 2;
@@ -156,7 +181,7 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
 }  // namespace
 
 std::vector<std::string> benchSceneNames() {
-  return {"car491", "slab491", "pile", "car", "car_wide", "areas1", "areas2", "areas4", "areas8"};
+  return {"car491", "slab491", "pile", "small_pile", "car", "car_wide", "areas1", "areas2", "areas4", "areas8"};
 }
 
 BenchScene makeBenchScene(const std::string& name) {
@@ -167,9 +192,9 @@ BenchScene makeBenchScene(const std::string& name) {
                : name == "car"      ? carScene(name, 2048)
                : name == "car_wide" ? carScene(name, 65536)
                                     : emptyScene(name, 1024);
-  if (name == "pile") {
+  if (name == "pile" || name == "small_pile") {
     scene.pack.noise.highest_q = scene.pack.noise.lowest_q;
-    scene.cone_radius_cells = 256;
+    scene.cone_radius_cells = name == "pile" ? 256 : 64;
   }
   SPOOR_ASSERT(validatePack(scene.pack));
   scene.id = packId(encodePack(scene.pack));
@@ -184,6 +209,48 @@ BenchScene makeAreasScene(int area_count) {
   scene.sinking_q_per_tick = 3;
   SPOOR_ASSERT(validatePack(scene.pack));
   scene.id = packId(encodePack(scene.pack));
+  return scene;
+}
+
+Parameters thesisIterative() {
+  Parameters parameters = thesisParameters();
+  parameters.displacement = Displacement::iterative;
+  parameters.slopes = SlopeRule::interleaved;
+  return parameters;
+}
+
+Parameters thesisSsbo() {
+  Parameters parameters = thesisParameters();
+  parameters.slopes = SlopeRule::scatter;
+  return parameters;
+}
+
+Parameters thesisSsboMultiple() {
+  Parameters parameters = thesisSsbo();
+  parameters.displacement = Displacement::spread;
+  return parameters;
+}
+
+BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terrain_size_m, int car_count,
+                           const Parameters& parameters) {
+  BenchScene scene;
+  ScenePack& pack = scene.pack = emptyScene(name, heightmap_size);
+  pack.cell_q = (terrain_size_m * rules::kUnitsPerMetre + heightmap_size / 2) / heightmap_size;
+  pack.parameters = parameters;
+  // The thesis gives no threshold for its measurements: 35 degrees, as a slope over one cell.
+  pack.parameters.slope_threshold_q = pack.cell_q * 7 / 10;
+  pack.parameters.diagonal_threshold_q = pack.cell_q * 99 / 100;
+  pack.noise.lattice_step_q32 = (std::int64_t(1) << 32) * pack.cell_q / 160000;  // dunes of 16 m
+  addMesh(pack, thesisCar(pack.cell_q));
+  const std::int32_t side_q = heightmap_size * pack.cell_q;
+  for (int car = 0; car < car_count; ++car) {
+    const std::int32_t y_q = side_q / 2 + (2 * car - car_count + 1) * kCarDistance_q / 2;
+    pack.paths.push_back({{{side_q / 4, y_q}, {side_q * 3 / 4, y_q}}, kCarSpeed_q, 0, 1});
+    pack.bodies.push_back(bodyOf(0, {0, 0, 0}, 1500));
+    pack.bodies.back().path_index = car;
+  }
+  SPOOR_ASSERT(validatePack(pack));
+  scene.id = packId(encodePack(pack));
   return scene;
 }
 

@@ -24,6 +24,7 @@ std::vector<std::string> benchSceneNames();
 ///   car491   one body whose search domain is 491 x 491 cells: a plate on four wheels' footprints
 ///   slab491  the same domain with the whole underside in the soil: the worst case for `nearest`
 ///   pile     no body; a cone of soil on level ground, 512 cells across, comes to rest
+///   small_pile  the same, 128 cells across
 ///   car      a car of five bodies in 2048 x 2048 cells; car_wide: the same car in 65 536 x 65 536
 ///   areas1, areas2, areas4, areas8   plates that go down on level ground: makeAreasScene
 BenchScene makeBenchScene(const std::string& name);
@@ -35,6 +36,20 @@ BenchScene makeBenchScene(const std::string& name);
 /// @param area_count  1, 2, 4 or 8
 BenchScene makeAreasScene(int area_count);
 inline constexpr std::int64_t kAreasTickLimit = 60;
+
+/// The set-up of the thesis's measurements: cars of 24 m side by side, 30 m apart, drive over dunes of snow. Each has
+/// four wheels' footprints in the soil under a roof that spans the active area that the thesis gives for one car (3774
+/// to 241 591 cells on maps of 512 to 4096 cells a side), so that its search domain is that area. They move 4.88 cm a
+/// tick, a cell of the finest map.
+/// @param heightmap_size  cells a side
+/// @param terrain_size_m  the same, m
+BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terrain_size_m, int car_count,
+                           const Parameters& parameters);
+
+/// The thesis's three ways (Table 5.1), with its defaults: jump flooding, no memory of compaction, one round.
+Parameters thesisIterative();
+Parameters thesisSsbo();
+Parameters thesisSsboMultiple();
 
 /// The scene's state before its first tick. The base is the scene's pack's.
 WorldState startOf(const BenchScene& scene, const BaseTerrain& base);

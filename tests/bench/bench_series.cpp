@@ -42,6 +42,7 @@ class Runner {
   }
 
   Series take() {
+    series_.ledger = simulation_.state().ledger;
     series_.live_tiles = std::int64_t(simulation_.state().tiles.size());
     series_.store_bytes = std::int64_t(simulation_.state().tiles.memoryBytes());
     series_.memory = simulation_.backend().memory();

@@ -28,6 +28,7 @@ struct Series {
   std::int64_t bytes_moved = 0, relax_bytes = 0, bytes_to_device = 0, bytes_from_device = 0, delta_bytes = 0;
 
   // At the end.
+  Ledger ledger;
   std::int64_t live_tiles = 0, store_bytes = 0;
   BackendMemory memory;
 

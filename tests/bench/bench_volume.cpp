@@ -1,0 +1,116 @@
+// spoor-bench thesis, Table 5.9: no soil is lost, whatever the parameters.
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "shared/base/json.h"
+#include "shared/base/kernels.h"
+#include "tests/bench/bench_measures.h"
+
+namespace spoor {
+namespace {
+
+constexpr std::int64_t kFrameCount = 5000, kEvery = 500;
+// A software renderer takes most of an hour for all of them over the whole map.
+constexpr std::int64_t kSoftwareFrameCount = 500, kSoftwareEvery = 50;
+
+/// Sum of all heights of a world before anything moved.
+std::int64_t baseSum(const BaseTerrain& base) {
+  const TileCoordinate extent = tileExtent(base.pack());
+  PlaneCells cells;
+  std::int64_t sum = 0;
+  for (std::int32_t y = 0; y < extent.y; ++y)
+    for (std::int32_t x = 0; x < extent.x; ++x) {
+      base.fillHeights({x, y}, cells);
+      sum += kernels().sum(cells.data(), rules::kTileCells);
+    }
+  return sum;
+}
+
+/// One engine's way through the frames.
+struct Volume {
+  std::string label;
+  std::vector<std::int64_t> sum;  // of soil over the whole world, after each printed frame
+  std::vector<std::int64_t> compacted;
+  std::int64_t unequal_ticks = 0;
+  std::uint64_t hash = 0;
+};
+
+Volume runFrames(const BenchScene& scene, const Engine& engine, std::int64_t frame_count, std::int64_t every) {
+  auto backend = openEngine(engine);
+  if (!backend) throw std::runtime_error(backend.error());
+  const BaseTerrain base(scene.pack);
+  const Script script(base);
+  Simulation simulation(base, startOf(scene, base), std::move(*backend));
+  const std::int64_t before = baseSum(base);
+  Volume volume;
+  volume.label = engine.on_gl ? "gl" : "native";
+  for (std::int32_t tick = 1; tick <= frame_count; ++tick) {
+    auto result = simulation.step(posesOf(scene, script, tick));
+    if (!result) throw std::runtime_error(result.error());
+    volume.unequal_ticks += result->ledger.error() != 0 ? 1 : 0;
+    if (tick % every != 0) continue;
+    // Added up from the cells, not from the sums that the tick keeps.
+    if (!recount(simulation.state())) ++volume.unequal_ticks;
+    const Ledger& ledger = result->ledger;
+    volume.sum.push_back(before - ledger.initial + ledger.ground + ledger.compacted);
+    volume.compacted.push_back(ledger.compacted);
+    if (tick % 1000 == 0) std::fprintf(stderr, "  frame %d\n", tick);
+  }
+  volume.hash = stateHash(simulation.state());
+  return volume;
+}
+
+void measureWay(const Settings& settings, const char* title, const char* name, const Parameters& parameters,
+                Report& report) {
+  const BenchScene scene = makeThesisScene(name, 512, 200, 1, parameters);
+  std::fprintf(stderr, "%s ...\n", name);
+  std::vector<Volume> volumes{runFrames(scene, nativeBeside(settings), kFrameCount, kEvery)};
+  std::int64_t every = kEvery;
+  if (settings.engine.on_gl) {
+    auto opened = openEngine(settings.engine);
+    const bool software = opened && (*opened)->renderer().find("llvmpipe") != std::string::npos;
+    opened = Error{};
+    if (software) {
+      every = kSoftwareEvery;
+      volumes = {runFrames(scene, nativeBeside(settings), kSoftwareFrameCount, every)};
+    }
+    volumes.push_back(runFrames(scene, settings.engine, software ? kSoftwareFrameCount : kFrameCount, every));
+  }
+  const std::int64_t before = baseSum(BaseTerrain(scene.pack));
+  std::printf("%s\n  %-10s %22lld (initial value)\n", title, "-", static_cast<long long>(before));
+  for (std::size_t i = 0; i < volumes.front().sum.size(); ++i) {
+    std::printf("  %-10lld", static_cast<long long>(every * std::int64_t(i + 1)));
+    for (const Volume& volume : volumes)
+      std::printf(" %22lld (%s, of it %lld compacted)", static_cast<long long>(volume.sum[i]), volume.label.c_str(),
+                  static_cast<long long>(volume.compacted[i]));
+    std::printf("\n");
+  }
+  for (const Volume& volume : volumes) {
+    const bool all_equal = volume.unequal_ticks == 0 &&
+                           std::ranges::all_of(volume.sum, [before](std::int64_t sum) { return sum == before; });
+    std::printf("  %-7s every tick %s; hash %s\n", volume.label.c_str(), all_equal ? "equal" : "NOT EQUAL",
+                hexText(volume.hash).c_str());
+    if (!all_equal) report.faults.push_back(std::string(name) + ", " + volume.label + ": the volume changed");
+    if (volume.hash != volumes.front().hash) report.faults.push_back(std::string(name) + ": hashes differ");
+  }
+  std::printf("\n");
+}
+
+}  // namespace
+
+void measureVolume(const Settings& settings, Report& report) {
+  Parameters thesis = thesisSsbo();
+  thesis.active_areas = 0;
+  measureWay(settings,
+             "Table 5.9: volume of the world, active areas off, compression 0 (the thesis: 889192448 throughout)",
+             "thesis table 5.9", thesis, report);
+  Parameters spoor = thesisSsboMultiple();
+  spoor.compression_q16 = kOneQ16 / 2;
+  spoor.compaction_limit_q16 = kOneQ16 / 2;
+  measureWay(settings, "The same with active areas on and compression 0.5, which the thesis could not do",
+             "thesis table 5.9, areas and compression", spoor, report);
+}
+
+}  // namespace spoor
