@@ -85,12 +85,14 @@ TEST_P(EveryKernels, LowersAlongARow) {
 
 TEST_P(EveryKernels, OverlapOfARow) {
   for (int n = 0; n <= kLongestRow; ++n) {
-    const Cells height = numbers(n, 1000), bedrock = below(height), underside = numbers(n, 1200);
+    const Cells height = numbers(n, 1000), bedrock = below(height), underside = numbers(n, 1200),
+                before = numbers(n, 1500);
     Cells overlap(std::size_t(n), 77);
-    const int count = kernels_.overlap(height.data(), bedrock.data(), underside.data(), n, 100, overlap.data());
+    const int count =
+        kernels_.overlap(height.data(), bedrock.data(), underside.data(), before.data(), n, 100, overlap.data());
     int expected_count = 0;
     for (std::size_t i = 0; i < std::size_t(n); ++i) {
-      const int expected = rules::cellOverlap(height[i], bedrock[i], underside[i], 100);
+      const int expected = rules::cellOverlap(height[i], bedrock[i], underside[i], before[i], 100);
       ASSERT_EQ(overlap[i], expected) << "cell " << i << " of " << n;
       expected_count += expected > 0 ? 1 : 0;
     }

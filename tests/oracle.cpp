@@ -180,10 +180,12 @@ void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters
     takes_part[i] = tick_ == 0 || poses[i] != poses_[i];
     if (takes_part[i]) sub_steps_ = std::max(sub_steps_, subStepsFor(int(i), poses_[i], poses[i]));
   }
+  const std::vector<bool> moves = takes_part;
   setActive(plan(poses, takes_part));
   const DenseWorld before = world_;
   penetrating_cells_ = kept_back_ = 0;
   crowded_.clear();
+  drawBodies(moves, poses_);
   for (int step = 0; step < sub_steps_ && !active_tiles_.empty(); ++step) {
     const int sweeps = parameters_.sweeps_per_tick;
     subStep(takes_part, posesOfSubStep(poses, step + 1), (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
@@ -194,11 +196,17 @@ void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters
   ++tick_;
 }
 
-void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count) {
+/// Undersides of some of the bodies, and of nothing else.
+void Oracle::drawBodies(const std::vector<bool>& which, const std::vector<Pose>& poses) {
   std::ranges::fill(world_.underside, rules::kNoUnderside);
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if (takes_part[i]) oracleDepth(world_, placeForOracle(base_->pack(), int(i), poses[i]));
+    if (which[i]) oracleDepth(world_, placeForOracle(base_->pack(), int(i), poses[i]));
   oracleFrustum(world_, parameters_.frustum_height_q);
+}
+
+void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count) {
+  world_.underside_before = world_.underside;
+  drawBodies(takes_part, poses);
   crowded_.clear();
   auto overlap = oracleOverlap(world_, parameters_.obstacle_threshold_q);
   penetrating_cells_ += std::ranges::count_if(overlap, [](std::int32_t value) { return value > 0; });

@@ -16,6 +16,7 @@ struct DenseWorld {
   int columns = 0, rows = 0;                             // of the arrays: whole tiles
   int inside_columns = 0, inside_rows = 0;               // of the world
   std::vector<std::int32_t> height, bedrock, underside;  // [rows * columns], 0.1 mm
+  std::vector<std::int32_t> underside_before;            // a sub-step earlier
   std::vector<std::int32_t> compacted;                   // [rows * columns] soil pressed together, 0.1 mm
   std::vector<std::uint8_t> active;                      // [rows * columns] 1: the cell's tile is active
 
@@ -123,6 +124,7 @@ class Oracle {
   std::vector<std::uint8_t> plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const;
   void setActive(const std::vector<std::uint8_t>& tiles);
   void subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count);
+  void drawBodies(const std::vector<bool>& which, const std::vector<Pose>& poses);
   void wake(const DenseWorld& before);
 
   const BaseTerrain* base_;

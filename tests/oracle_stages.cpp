@@ -82,6 +82,7 @@ DenseWorld::DenseWorld(const BaseTerrain& base) {
       bedrock[at(x, y)] = height[at(x, y)] - pack.soil_depth_q;
     }
   underside.assign(height.size(), rules::kNoUnderside);
+  underside_before = underside;
   active.assign(height.size(), 0);
 }
 
@@ -165,7 +166,8 @@ std::vector<std::int32_t> oracleOverlap(const DenseWorld& world, int obstacle_th
       const int lowest = std::max(world.underside[i], world.bedrock[i]);
       if (world.height[i] > lowest)
         overlap[i] = world.height[i] - lowest;
-      else if (world.underside[i] - world.height[i] > obstacle_threshold)
+      else if (world.underside[i] - world.height[i] > obstacle_threshold &&
+               world.underside_before[i] - world.height[i] > obstacle_threshold)
         overlap[i] = rules::kFree;
     }
   return overlap;

@@ -33,7 +33,8 @@ TEST(Penetration, ClassifiesACellByTheGapAboveIt) {
       {rules::kHeightLimit, -5, -rules::kHeightLimit, 0, rules::kHeightLimit + 5},
   };
   for (const Case& c : cases)
-    EXPECT_EQ(rules::cellOverlap(c.height, c.bedrock, c.underside, c.obstacle_threshold), c.expected)
+    EXPECT_EQ(rules::cellOverlap(c.height, c.bedrock, c.underside, rules::kNoUnderside, c.obstacle_threshold),
+              c.expected)
         << c.height << ", " << c.bedrock << ", " << c.underside << ", " << c.obstacle_threshold;
 }
 

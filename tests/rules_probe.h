@@ -89,7 +89,9 @@ RULE int probeRule(int which, int seed) {
     return pairFlow(height_a, height_b, threshold, small, drawn(seed, 64, 0, 5000), drawn(seed, 65, 0, kHeightLimit),
                     drawn(seed, 66, 0, 500));
   if (which == 6) return roomBeneath(height_a, height_b, threshold);
-  if (which == 7) return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b, threshold);
+  if (which == 7)
+    return return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b,
+                              drawn(seed, 95, -kHeightLimit, kHeightLimit), threshold);
   if (which == 8)
     return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000),
                          drawn(seed, 70, -3000, 3000));

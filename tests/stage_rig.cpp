@@ -74,6 +74,7 @@ NativeStageRig::NativeStageRig(const World& made_world, int thread_count, const 
       skip_settled_(skip_settled) {
   area.gather(tiles.tiles, plan_.parameters.compression_q16 > 0, pool);
   area.clearUnderside(made_world.pack, pool);
+  area.underside_before = area.underside;
   runDepth(context, {});
   if (hasDomain()) domain.reset(domainBox(), area);
 }

@@ -187,6 +187,8 @@ class GlBackend final : public Backend {
     clock.begin();
     stages.gather(tables, device_->tiles);
     clock.end(Stage::active);
+    if (tables.stood.cover.count > 0) stages.depth(tables, GlStages::kStood);
+    clock.end(Stage::depth);
     for (int i = 0; i < int(tables.sub_steps.size()); ++i) {
       stages.depth(tables, i);
       clock.end(Stage::depth);

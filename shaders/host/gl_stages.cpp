@@ -62,6 +62,7 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
               {"the active tiles' next heights", limits.storage_block_bytes}},
       bedrock_("the active tiles' bedrock", limits.storage_block_bytes),
       underside_("the active tiles' undersides", limits.storage_block_bytes),
+      underside_before_("the active tiles' earlier undersides", limits.storage_block_bytes),
       tile_states_("the active tiles' states", limits.storage_block_bytes),
       overlap_("the domains' overlap", limits.storage_block_bytes),
       free_mask_("the domains' free cells", limits.storage_block_bytes),
@@ -97,7 +98,7 @@ Status GlStages::load(const MeshTable& meshes) {
 Status GlStages::begin(const TickTables& tick) {
   current_ = 0;
   const std::int64_t tiles = std::int64_t(tick.tile_index.size());
-  SubStepTables largest;
+  SubStepTables largest = tick.stood;
   for (const SubStepTables& step : tick.sub_steps) {
     largest.point_count = std::max(largest.point_count, step.point_count);
     largest.primitive_count = std::max(largest.primitive_count, step.primitive_count);
@@ -115,6 +116,7 @@ Status GlStages::begin(const TickTables& tick) {
       {&height_[1], schedule_ == RelaxSchedule::fused ? plane_bytes : 0},
       {&bedrock_, plane_bytes},
       {&underside_, plane_bytes},
+      {&underside_before_, plane_bytes},
       {&tile_states_, tiles * std::int64_t(sizeof(rules::TileState))},
       {&overlap_, domain_bytes},
       {&free_mask_, largest.mask_words * kCellBytes},
@@ -179,8 +181,9 @@ void GlStages::gather(const TickTables& tick, const TilePool& pool) {
 }
 
 void GlStages::depth(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
+  const SubStepTables& step = i == kStood ? tick.stood : tick.sub_steps[std::size_t(i)];
   bindCells(tick);
+  underside_before_.bind(rules::kBindUndersideBefore);
   use(cover_, i);
   setUniform(2, step.first_step);
   dispatch(step.cover);
@@ -191,7 +194,7 @@ void GlStages::depth(const TickTables& tick, int i) {
 }
 
 void GlStages::drawBodies(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
+  const SubStepTables& step = i == kStood ? tick.stood : tick.sub_steps[std::size_t(i)];
   bindTable(rules::kBindBodies, step.bodies);
   bindTable(rules::kBindDomains, step.domains);
   bindTable(rules::kBindDomainTiles, step.domain_tiles);
@@ -213,6 +216,7 @@ void GlStages::penetration(const TickTables& tick, int i) {
   bindCells(tick);
   bindTable(rules::kBindDomains, step.domains);
   bindTable(rules::kBindDomainTiles, step.domain_tiles);
+  underside_before_.bind(rules::kBindUndersideBefore);
   overlap_.bind(rules::kBindOverlap);
   free_mask_.bind(rules::kBindFreeMask);
   row_chunks_.bind(rules::kBindRowChunks);
@@ -304,9 +308,9 @@ void GlStages::hash(const TickTables& tick, const TilePool& pool) {
 std::int64_t GlStages::deviceBytes() const {
   std::int64_t bytes = height_[0].bytes() + height_[1].bytes();
   for (const GrowingBuffer* buffer :
-       {&upload_,        &vertices_,       &indices_,     &points_,       &large_,   &bedrock_,    &underside_,
-        &tile_states_,   &overlap_,        &free_mask_,   &nearest_row_,  &target_,  &row_chunks_, &receivers_,
-        &requested_low_, &requested_high_, &granted_low_, &granted_high_, &results_, &staging_})
+       {&upload_,           &vertices_,      &indices_,        &points_,      &large_,        &bedrock_, &underside_,
+        &underside_before_, &tile_states_,   &overlap_,        &free_mask_,   &nearest_row_,  &target_,  &row_chunks_,
+        &receivers_,        &requested_low_, &requested_high_, &granted_low_, &granted_high_, &results_, &staging_})
     bytes += buffer->bytes();
   return bytes;
 }

@@ -35,7 +35,9 @@ class GlStages {
 
   // The tick's stages, in order; those with `i` for every sub-step.
   void gather(const TickTables& tick, const TilePool& pool);
+  /// @param i  kStood: where the bodies stood before the tick, before the first sub-step
   void depth(const TickTables& tick, int i);
+  static constexpr int kStood = rules::kStoodLists;
   void penetration(const TickTables& tick, int i);
   void nearest(const TickTables& tick, int i);
   void displace(const TickTables& tick, int i);
@@ -78,7 +80,7 @@ class GlStages {
   std::array<std::array<GlProgram, 2>, rules::kMatchingCount> exchange_;
   GrowingBuffer upload_, vertices_, indices_, points_, large_;
   GrowingBuffer height_[2];  // the second only where sweeps are fused
-  GrowingBuffer bedrock_, underside_, tile_states_;
+  GrowingBuffer bedrock_, underside_, underside_before_, tile_states_;
   GrowingBuffer overlap_, free_mask_, nearest_row_, target_, row_chunks_, receivers_;
   GrowingBuffer requested_low_, requested_high_, granted_low_, granted_high_;
   GrowingBuffer results_, staging_;

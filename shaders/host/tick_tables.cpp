@@ -15,7 +15,7 @@ constexpr int kSize = rules::kTileSize;
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
 static_assert(sizeof(rules::TileResult) == 44 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 48);
-static_assert(sizeof(rules::TickHead) == 32 + rules::kSubStepMost * sizeof(rules::SubStepLists));
+static_assert(sizeof(rules::TickHead) == 32 + (rules::kSubStepMost + 1) * sizeof(rules::SubStepLists));
 static_assert(rules::kSubStepMost == kSubStepLimit);
 
 /// Collects tables as bytes.
@@ -74,6 +74,10 @@ class TableMaker {
     tables_.hash = writer_.dispatch(tiles, shape_);
     int sweep = 0;
     covered_before_.assign(std::size_t(count_), 0);
+    if (!plan_.stood.bodies.empty()) {
+      tables_.stood = subStepTables(plan_.stood, sweep);
+      border_covered_ = true;
+    }
     for (const SubStep& sub_step : plan_.sub_steps) {
       tables_.sub_steps.push_back(subStepTables(sub_step, sweep));
       sweep += sub_step.sweep_count;
@@ -121,6 +125,7 @@ class TableMaker {
     std::vector<rules::Block> blocks;
     std::vector<std::uint8_t> covered(std::size_t(count_), 0);
     domain_of_body_.assign(sub_step.bodies.size(), -1);
+    const bool searched = &sub_step != &plan_.stood;
     for (const Domain& domain : sub_step.domains) {
       const CellBox& box = domain.box;
       const int index = int(domains.size());
@@ -144,9 +149,10 @@ class TableMaker {
           domain_tiles.push_back(tile);
           covered[std::size_t(tile)] = 1;
         }
+      for (const int body : domain.bodies) domain_of_body_[std::size_t(body)] = index;
+      if (!searched) continue;
       for (int y = 0; y < entry.rows; y += rules::kMaskRows)
         for (int x = 0; x < groupsFor(entry.width, shape_.group); ++x) blocks.push_back({index, x, y});
-      for (const int body : domain.bodies) domain_of_body_[std::size_t(body)] = index;
       step.domain_cells += std::int64_t(entry.width) * entry.rows;
       step.mask_words += std::int64_t(entry.width) * groupsFor(entry.rows, rules::kMaskRows);
       step.row_chunks += std::int64_t(entry.rows) * groupsFor(entry.width, shape_.group);
@@ -163,7 +169,9 @@ class TableMaker {
     std::vector<rules::Block> blocks;
     for (std::size_t tile = 0; tile < covered.size(); ++tile) {
       const bool border = entries_[tile].inside_columns < kSize || entries_[tile].inside_rows < kSize;
-      if (covered[tile] == 0 && covered_before_[tile] == 0 && !(border && tables_.sub_steps.empty())) continue;
+      if (covered[tile] == 0 && covered_before_[tile] == 0 &&
+          !(border && !border_covered_ && tables_.sub_steps.empty()))
+        continue;
       for (int slab = 0; slab < rules::kSlabs; ++slab) blocks.push_back({int(tile), slab, 0});
     }
     step.cover = writer_.dispatch(blocks, shape_);
@@ -241,6 +249,7 @@ class TableMaker {
   TableWriter writer_;
   int count_;
   int row_count_ = 0;
+  bool border_covered_ = false;
   std::vector<rules::TileEntry> entries_;
   std::vector<std::uint8_t> covered_before_;
   std::vector<int> domain_of_body_;

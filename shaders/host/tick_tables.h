@@ -57,6 +57,7 @@ struct TickTables {
   TableRange head;   // TickHead and row flags
   TableRange tiles;  // TileEntry [active tiles]
   GroupList gather, exchange, sweep, hash;
+  SubStepTables stood;  // where bodies stood before the tick: for depth only
   std::vector<SubStepTables> sub_steps;
   bool beneath = false;         // may an underside, or the height limit, stop soil from coming somewhere?
   std::vector<int> tile_index;  // [plan.active] where the shaders have that tile

@@ -9,9 +9,13 @@ SPOOR_RULES_BEGIN
 
 /// Overlap of a cell: > 0 the soil (height units) that a body pushes out, kObstacle, or kFree.
 /// Soil below bedrock does not exist, so no more than height - bedrock is pushed.
-RULE int cellOverlap(int height, int bedrock, int underside, int obstacle_threshold) {
+/// A cell that a body has just left is an obstacle too: else a body thinner than a cell, which leaves its cells all at
+/// once, would push as much backward as forward (Persson 2019, 6.2: "the current and the previous obstacle map").
+/// @param underside_before  the same a sub-step earlier
+RULE int cellOverlap(int height, int bedrock, int underside, int underside_before, int obstacle_threshold) {
   int pushed = height - maxInt(underside, bedrock);
-  return pushed > 0 ? pushed : (underside - height <= obstacle_threshold ? kObstacle : kFree);
+  return pushed > 0 ? pushed
+                    : (minInt(underside, underside_before) - height <= obstacle_threshold ? kObstacle : kFree);
 }
 
 /// The underside as far as it is seen: nothing higher above bedrock than the frustum (0: any) is there.

@@ -1,5 +1,5 @@
 // Stage penetration: which cells a body overlaps, and by how much; lists the rows that have any.
-// In: blocks (owner: domain; x: chunk of columns; y: first row of 32), height, bedrock, underside.
+// In: blocks (owner: domain; x: chunk of columns; y: first row of 32), height, bedrock, undersides.
 // Out: overlap, free mask, row flags, row chunks, tick. A lane takes 32 cells of a column. Twin: penetration.cpp.
 #version 450 core
 #include "../rules/penetration.h"
@@ -10,6 +10,7 @@ layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; }
 layout(std430, binding = kBindHeight) readonly buffer Height { int height[]; };
 layout(std430, binding = kBindBedrock) readonly buffer Bedrock { int bedrock[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
+layout(std430, binding = kBindUndersideBefore) readonly buffer UndersideBefore { int underside_before[]; };
 layout(std430, binding = kBindOverlap) writeonly buffer Overlap { int overlap[]; };
 layout(std430, binding = kBindFreeMask) writeonly buffer FreeMask { uint free_mask[]; };
 layout(std430, binding = kBindRowChunks) writeonly buffer RowChunks { RowChunk row_chunks[]; };
@@ -43,7 +44,7 @@ void main() {
       int row = block.y + i;
       bool enters = i == 0 || (domain.y0 + row) % kTileSize == 0;  // another tile
       at = enters ? tileCell(grid, domain.x0 + column, domain.y0 + row) : at + kTileSize;
-      int value = cellOverlap(height[at], bedrock[at], underside[at], tick.obstacle_threshold);
+      int value = cellOverlap(height[at], bedrock[at], underside[at], underside_before[at], tick.obstacle_threshold);
       overlap[domain.first_cell + row * domain.width + column] = value;
       if (value == kFree) free |= 1u << uint(i);
       if (value > 0) {

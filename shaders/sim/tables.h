@@ -30,6 +30,7 @@ RULE_CONST kBindPoints = 10;       // depth: int [3 * points of the sub-step's b
 RULE_CONST kBindVertices = 11;     // depth: int [3 * vertices of all meshes]
 RULE_CONST kBindIndices = 12;      // depth: int, the triangles of all meshes (3 each) and their edges (2 each)
 RULE_CONST kBindLarge = 13;        // depth: ivec2 (body, primitive): those worth groups of their own
+RULE_CONST kBindUndersideBefore = 12;  // depth, penetration: as kBindUnderside, a sub-step earlier
 RULE_CONST kBindFreeMask = 13;     // nearest: uint [words of the domains]: a column's 32 cells, bit set: free
 RULE_CONST kBindNearestRow = 14;   // nearest: int [domain cells]: of the same column, in rows of the box, or kNoFreeRow
 RULE_CONST kBindReceivers = 13;    // displace: RowChunk: rows that hold targets
@@ -40,6 +41,7 @@ RULE_CONST kBindResults = 11;      // hash: TileResult [active tiles]
 RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tiles' boxes, one after the other
 
 RULE_CONST kSubStepMost = 32;
+RULE_CONST kStoodLists = kSubStepMost;  // lists of where bodies stood before the tick
 RULE_CONST kGatherQuads = 4;    // cells of a tile, in fours, that a lane gathers
 RULE_CONST kBlocksPerSide = 2;  // of a tile, in a fused sweep
 RULE_CONST kSlabRows = 8;       // what relax skips where nothing has changed
@@ -79,7 +81,7 @@ struct TickHead {
   int penetrating_cells;  // of all sub-steps
   int slabs_visited;      // by the relaxation; each stands for kSlabRows * kTileSize / 2 pairs
   int staged_cells;
-  SubStepLists lists[kSubStepMost];
+  SubStepLists lists[kSubStepMost + 1];
 };
 
 /// An active tile.

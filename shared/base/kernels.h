@@ -21,8 +21,8 @@ struct Kernels {
   /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
   void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
   /// Stage penetration: overlap of a row of cells; returns how many are penetrating.
-  int (*overlap)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
-                 int obstacle_threshold, std::int32_t* overlap);
+  int (*overlap)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside,
+                 const std::int32_t* underside_before, int n, int obstacle_threshold, std::int32_t* overlap);
   /// Stage nearest, column pass, one row on the way down: last_free[i] = y where overlap[i] is free, else unchanged;
   /// copied to `out`.
   void (*carryFree)(const std::int32_t* overlap, int n, int y, std::int32_t* last_free, std::int32_t* out);

@@ -67,11 +67,11 @@ void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int s
         rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
 }
 
-int overlap(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
-            int32_t* __restrict out) {
+int overlap(const int32_t* height, const int32_t* bedrock, const int32_t* underside, const int32_t* underside_before,
+            int n, int obstacle_threshold, int32_t* __restrict out) {
   int count = 0;
   for (int i = 0; i < n; ++i) {
-    const int32_t value = rules::cellOverlap(height[i], bedrock[i], underside[i], obstacle_threshold);
+    const int32_t value = rules::cellOverlap(height[i], bedrock[i], underside[i], underside_before[i], obstacle_threshold);
     out[i] = value;
     count += value > 0 ? 1 : 0;
   }

@@ -140,12 +140,19 @@ class Planner {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (!moves(i)) continue;
       // Where it stood, soil that it held up may fall now.
-      addTiles(activeBox(placeBody(pack_, int(i), state_.poses[i])), tiles_);
+      addStood(plan.stood, placeBody(pack_, int(i), state_.poses[i]));
       for (int step = 1; step <= step_count_; ++step)
         placed_[i].push_back(placeBody(pack_, int(i), interpolate(state_.poses[i], poses_[i], step, step_count_)));
       for (const PlacedBody& body : placed_[i]) addTiles(activeBox(body), tiles_);
       taking_part_.push_back(i);
     }
+  }
+
+  void addStood(SubStep& stood, PlacedBody body) {
+    addTiles(activeBox(body), tiles_);
+    if (body.box.empty()) return;
+    stood.domains.push_back({body.box, {int(stood.bodies.size())}});
+    stood.bodies.push_back(std::move(body));
   }
 
   /// Adds bodies at rest that meet active tiles; returns whether there were any.

@@ -144,24 +144,22 @@ struct Chunk {
 };
 
 /// Every chunk looks at every primitive of its domain: as few chunks as still share the work out.
-std::vector<Chunk> chunksOf(const SubStep& sub_step, int thread_count) {
+std::vector<Chunk> chunksOf(std::span<const Domain> domains, int thread_count) {
   constexpr int kLeastRows = 16;
   std::vector<Chunk> chunks;
-  for (const Domain& domain : sub_step.domains) {
+  for (const Domain& domain : domains) {
     const int rows = domain.box.y1 - domain.box.y0;
-    const int chunk_rows = std::max<int>(kLeastRows, rows * int(sub_step.domains.size()) / thread_count + 1);
+    const int chunk_rows = std::max<int>(kLeastRows, rows * int(domains.size()) / thread_count + 1);
     for (int y = domain.box.y0; y < domain.box.y1; y += chunk_rows)
       chunks.push_back({&domain, {domain.box.x0, y, domain.box.x1, std::min(y + chunk_rows, domain.box.y1)}});
   }
   return chunks;
 }
 
-}  // namespace
-
-void runDepth(const NativeContext& context, const SubStep& sub_step) {
-  std::vector<DrawOrder> orders(sub_step.bodies.size());
-  context.pool.forEach(int(orders.size()), [&](int i, int) { orders[i] = orderOf(context.pack, sub_step.bodies[i]); });
-  const std::vector<Chunk> chunks = chunksOf(sub_step, context.pool.threadCount());
+/// Draws a sub-step's bodies into some of its domains, which are disjoint.
+void drawDomains(const NativeContext& context, const SubStep& sub_step, const std::vector<DrawOrder>& orders,
+                 std::span<const Domain> domains) {
+  const std::vector<Chunk> chunks = chunksOf(domains, context.pool.threadCount());
   context.pool.forEach(int(chunks.size()), [&](int i, int) {
     const CellBox& box = chunks[i].box;
     std::vector<std::size_t> row_offset;
@@ -170,7 +168,16 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
     for (const int body : chunks[i].domain->bodies)
       if (sub_step.bodies[body].box.meets(box)) target.draw(orders[body]);
   });
-  // Once all are drawn: a segment may lie under several domains.
+}
+
+std::vector<DrawOrder> ordersOf(const NativeContext& context, const SubStep& sub_step) {
+  std::vector<DrawOrder> orders(sub_step.bodies.size());
+  context.pool.forEach(int(orders.size()), [&](int i, int) { orders[i] = orderOf(context.pack, sub_step.bodies[i]); });
+  return orders;
+}
+
+/// Once all are drawn (a segment may lie under several domains): the lowest of each segment.
+void findLowest(const NativeContext& context) {
   context.pool.forEach(int(context.area.runs.size()), [&](int i, int) {
     const Run& run = context.area.runs[i];
     for (int row = 0; row < rules::kTileSize; ++row)
@@ -180,6 +187,19 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
                 context.area.underside.data() + run.rowOffset(row) + std::size_t(tile * rules::kTileSize),
                 rules::kTileSize);
   });
+}
+
+}  // namespace
+
+void runDepth(const NativeContext& context, const SubStep& sub_step) {
+  drawDomains(context, sub_step, ordersOf(context, sub_step), sub_step.domains);
+  findLowest(context);
+}
+
+void runStood(const NativeContext& context, const SubStep& stood) {
+  const std::vector<DrawOrder> orders = ordersOf(context, stood);
+  for (const Domain& domain : stood.domains) drawDomains(context, stood, orders, {&domain, 1});
+  findLowest(context);
 }
 
 }  // namespace spoor

@@ -51,6 +51,11 @@ class NativeBackend final : public Backend {
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
     effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
+    {
+      StageTimer timer(effect.stage_ms, Stage::depth);
+      area_.clearUnderside(context.pack, pool_);
+      runStood(context, plan.stood);
+    }
     int sweep = 0;
     for (const SubStep& sub_step : plan.sub_steps) {
       runSubStep(context, sub_step, sweep, effect);
@@ -69,7 +74,8 @@ class NativeBackend final : public Backend {
 
   BackendMemory memory() const override {
     std::size_t cells = area_.height.capacity() + area_.bedrock.capacity() + area_.underside.capacity() +
-                        area_.lowest_underside.capacity() + area_.last_change.capacity() + underside_before_.capacity();
+                        area_.lowest_underside.capacity() + area_.last_change.capacity() +
+                        area_.underside_before.capacity() + lowest_before_.capacity();
     std::size_t sums = 0;
     for (const DomainWork& domain : domains_) {
       cells +=
@@ -84,13 +90,13 @@ class NativeBackend final : public Backend {
     const int step = sweep * rules::kMatchingCount;
     {
       StageTimer timer(effect.stage_ms, Stage::depth);
-      underside_before_ = area_.lowest_underside;
+      lowest_before_ = area_.lowest_underside;
+      std::swap(area_.underside, area_.underside_before);
       area_.clearUnderside(context.pack, pool_);
       runDepth(context, sub_step);
       // Where a body was or is, room beneath it may have changed.
-      for (std::size_t i = 0; i < underside_before_.size(); ++i)
-        if (std::min(area_.lowest_underside[i], underside_before_[i]) < rules::kNoUnderside)
-          area_.last_change[i] = step;
+      for (std::size_t i = 0; i < lowest_before_.size(); ++i)
+        if (std::min(area_.lowest_underside[i], lowest_before_[i]) < rules::kNoUnderside) area_.last_change[i] = step;
     }
     effect.bytes_moved += effect.active_cells * kClearBytes;
     domains_.resize(std::max(domains_.size(), sub_step.domains.size()));
@@ -125,7 +131,7 @@ class NativeBackend final : public Backend {
   const Kernels* kernels_;
   bool skip_settled_;
   WorkArea area_;
-  std::vector<std::int32_t> underside_before_;
+  std::vector<std::int32_t> lowest_before_;  // of segments, a sub-step earlier
   std::vector<DomainWork> domains_;
   std::optional<std::pair<TickPlan, const BaseTerrain*>> submitted_;
 };

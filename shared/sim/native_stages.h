@@ -50,6 +50,9 @@ inline int rowsPerTask(int length) {
 /// with each segment's lowest.
 void runDepth(const NativeContext& context, const SubStep& sub_step);
 
+/// The same for where bodies stood before the tick (TickPlan::stood), whose domains may overlap.
+void runStood(const NativeContext& context, const SubStep& stood);
+
 /// Stage penetration: fills overlap and its counts.
 void runPenetration(const NativeContext& context, DomainWork& domain);
 

@@ -22,7 +22,7 @@ void runPenetration(const NativeContext& context, DomainWork& domain) {
       const std::size_t from = domain.row_offset[row];
       domain.penetrating_in_row[row] = context.kernels.overlap(
           context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,
-          domain.width(), context.parameters.obstacle_threshold_q,
+          context.area.underside_before.data() + from, domain.width(), context.parameters.obstacle_threshold_q,
           domain.overlap.data() + std::size_t(row) * domain.width());
     }
   });

@@ -48,6 +48,8 @@ struct TickPlan {
   std::int32_t tick = 0;
   Parameters parameters;
   std::vector<TileCoordinate> active;  // in (y, x) order
+  SubStep stood;                       // moving bodies where they were before the tick, a domain for each, which may
+                                       // overlap; cells that they covered take no soil in the first sub-step
   std::vector<SubStep> sub_steps;      // none where nothing is active
   bool too_fast = false;  // a body moves farther than one cell per sub-step, at the most sub-steps there are
 };

@@ -48,6 +48,7 @@ void WorkArea::gather(const std::vector<Tile*>& active, bool compacts, ThreadPoo
   height.resize(cells);
   bedrock.resize(cells);
   underside.resize(cells);
+  underside_before.resize(cells);
   compacted.assign(compacts ? cells : 0, 0);
   lowest_underside.resize(segments);
   last_change.assign(segments, 0);

@@ -39,6 +39,7 @@ struct WorkArea {
   std::vector<Band> bands;                               // in y order
   std::vector<int> run_of_tile;                          // [tiles]
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
+  std::vector<std::int32_t> underside_before;            // [cells] a sub-step earlier
   std::vector<std::int32_t> compacted;                   // [cells] where the tick compacts, else empty
   std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
