@@ -29,7 +29,7 @@ class StageRig {
   /// Only where the world's parameters compact. After setHeight and setUnderside.
   void setCompacted(const Cells& cells) { putTileCompacted(withInside(tileCompacted(), cells)); }
   virtual Cells overlap() const = 0;               // after penetration
-  virtual int penetratingCount() const = 0;        // after penetration
+  virtual int penetratingCount() const = 0;        // after penetration; those of whose overlap all was compacted too
   virtual Cells target() const = 0;                // after nearest; of penetrating cells
   virtual void setTarget(const Cells& cells) = 0;  // in place of nearest
   /// Active tiles' heights, kTileCells of each tile in the plan's order, cells outside the world included.
@@ -79,16 +79,16 @@ class NativeStageRig final : public StageRig {
                           bool skip_settled = true, std::vector<TileCoordinate> active = {});
 
   Cells overlap() const override { return domain.overlap; }
-  int penetratingCount() const override { return domain.penetrating_count; }
+  int penetratingCount() const override { return penetrating_count_; }
   Cells target() const override { return domain.target; }
   void setTarget(const Cells& cells) override;
   Cells tileHeights() const override { return tilesOf(area.height); }
   Cells tileUndersides() const override { return tilesOf(area.underside); }
   Cells tileCompacted() const override;
   void press(const std::vector<PlacedBody>& bodies) override;
-  void penetration() override { runPenetration(context, domain); }
-  void nearest() override { runNearest(context, domain); }
-  void displace() override { kept_back_ = runDisplace(context, domain, 0); }
+  void penetration() override { penetrating_count_ = runPenetration(context, domain); }
+  void nearest() override;
+  void displace() override;
   std::int64_t keptBack() const override { return kept_back_; }
   void relax(int first_sweep, int sweep_count) override { runRelax(context, first_sweep, sweep_count, skip_settled_); }
 
@@ -106,6 +106,7 @@ class NativeStageRig final : public StageRig {
   void putTiles(std::vector<std::int32_t>& plane, const Cells& cells);
 
   bool skip_settled_;
+  int penetrating_count_ = 0;
   std::int64_t kept_back_ = 0;
 };
 
