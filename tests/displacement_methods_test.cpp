@@ -170,6 +170,22 @@ void checkRandomWorlds(const BackendCase& backend_case, Displacement displacemen
   }
 }
 
+/// More rows and columns than one thread's share.
+void checkLargeWorld(BackendCase backend_case, Displacement displacement) {
+  backend_case.thread_count = 4;
+  // Both seeds have 40 iterations, two rounds, and so little room that much is kept back.
+  for (const std::uint32_t seed : {3u, 33u})
+    if (seed == 3 || !backend_case.gl) checkRandomWorld(backend_case, displacement, 230, 190, seed);
+}
+
+TEST_P(DirectStage, EqualsTheOracleWhenSharedOutBetweenThreads) { checkLargeWorld(GetParam(), Displacement::direct); }
+
+TEST_P(SpreadStage, EqualsTheOracleWhenSharedOutBetweenThreads) { checkLargeWorld(GetParam(), Displacement::spread); }
+
+TEST_P(IterativeStage, EqualsTheOracleWhenSharedOutBetweenThreads) {
+  checkLargeWorld(GetParam(), Displacement::iterative);
+}
+
 TEST_P(SpreadStage, EqualsTheOracleOnWorldsOfAnySizeAndKeepsTheSum) {
   checkRandomWorlds(GetParam(), Displacement::spread);
 }
