@@ -87,12 +87,6 @@ void NativeStageRig::press(const std::vector<PlacedBody>& bodies) {
   runDepth(context, sub_step);
 }
 
-void NativeStageRig::nearest() {
-  if (domain.penetrating_count > 0) runNearest(context, domain);
-}
-
-void NativeStageRig::displace() { kept_back_ = domain.penetrating_count > 0 ? runDisplace(context, domain, 0) : 0; }
-
 void NativeStageRig::setTarget(const Cells& cells) {
   domain.target = cells;
   domain.receives.assign(std::size_t(domain.rows()), 0);

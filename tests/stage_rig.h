@@ -79,16 +79,16 @@ class NativeStageRig final : public StageRig {
                           bool skip_settled = true, std::vector<TileCoordinate> active = {});
 
   Cells overlap() const override { return domain.overlap; }
-  int penetratingCount() const override { return penetrating_count_; }
+  int penetratingCount() const override { return domain.penetrating_count; }
   Cells target() const override { return domain.target; }
   void setTarget(const Cells& cells) override;
   Cells tileHeights() const override { return tilesOf(area.height); }
   Cells tileUndersides() const override { return tilesOf(area.underside); }
   Cells tileCompacted() const override;
   void press(const std::vector<PlacedBody>& bodies) override;
-  void penetration() override { penetrating_count_ = runPenetration(context, domain); }
-  void nearest() override;
-  void displace() override;
+  void penetration() override { runPenetration(context, domain); }
+  void nearest() override { runNearest(context, domain); }
+  void displace() override { kept_back_ = runDisplace(context, domain, 0); }
   std::int64_t keptBack() const override { return kept_back_; }
   void relax(int first_sweep, int sweep_count) override { runRelax(context, first_sweep, sweep_count, skip_settled_); }
 
@@ -106,7 +106,6 @@ class NativeStageRig final : public StageRig {
   void putTiles(std::vector<std::int32_t>& plane, const Cells& cells);
 
   bool skip_settled_;
-  int penetrating_count_ = 0;
   std::int64_t kept_back_ = 0;
 };
 
