@@ -74,6 +74,18 @@ const Run& WorkArea::runAt(std::int32_t x, std::int32_t y) const {
   return runs[found];
 }
 
+std::vector<BufferBytes> WorkArea::buffers() const {
+  const auto bytes = [](const auto&... planes) {
+    return std::int64_t((... + planes.capacity()) * sizeof(std::int32_t));
+  };
+  return {{"heights", bytes(height)},
+          {"heights after a sweep", bytes(next_height)},
+          {"bedrock", bytes(bedrock)},
+          {"undersides (2)", bytes(underside, underside_before)},
+          {"compacted soil", bytes(compacted)},
+          {"lowest underside and last change of rows", bytes(lowest_underside, last_change)}};
+}
+
 void WorkArea::clearUnderside(const ScenePack& pack, ThreadPool& pool) {
   pool.forEach(int(runs.size()), [&](int i, int) {
     const Run& run = runs[i];

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "shared/base/thread_pool.h"
-#include "shared/sim/plan.h"
+#include "shared/sim/backend.h"
 
 namespace spoor {
 
@@ -41,6 +41,7 @@ struct WorkArea {
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
   std::vector<std::int32_t> underside_before;            // [cells] a sub-step earlier
   std::vector<std::int32_t> compacted;                   // [cells] where the tick compacts, else empty
+  std::vector<std::int32_t> next_height;                 // [cells] of the sweep to come; none with pair exchange
   std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
 
@@ -59,6 +60,8 @@ struct WorkArea {
     return run.segment_offset + std::size_t(y % rules::kTileSize) * std::size_t(run.tile_count) +
            std::size_t(x / rules::kTileSize - run.first.x);
   }
+
+  std::vector<BufferBytes> buffers() const;
 
   /// Takes all undersides away, but for the world's border, which stays closed.
   void clearUnderside(const ScenePack& pack, ThreadPool& pool);
