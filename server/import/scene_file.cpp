@@ -32,16 +32,6 @@ struct WorldSize {
   double width_m = 0, height_m = 0;
 };
 
-/// Sets the side of a cell from metres; it is a whole number of 0.1 mm.
-void setCell(double cell_m, const char* what, SceneDraft& draft) {
-  draft.scene.pack.cell_q = toUnits(cell_m);
-  const double rounded_m = double(draft.scene.pack.cell_q) / rules::kUnitsPerMetre;
-  if (std::abs(rounded_m - cell_m) > 1e-9) {
-    draft.scene.notes.push_back(
-        fmt::format("{}: {} m rounded to {} m (whole 0.1 mm)", what, plainNumber(cell_m), plainNumber(rounded_m)));
-  }
-}
-
 /// The world as [thesis] says it: a square, and cells along its side. Of the two the number of cells is exact.
 WorldSize readSquareWorld(const TableReader& world, TableReader& thesis, SceneDraft& draft) {
   for (const char* key : {"terrainSize", "heightmapSize"}) {
@@ -56,11 +46,13 @@ WorldSize readSquareWorld(const TableReader& world, TableReader& thesis, SceneDr
                                               plainNumber(terrain_m), plainNumber(cell_m)));
     return {};
   }
-  setCell(cell_m, "thesis.terrainSize / thesis.heightmapSize", draft);
-  const double size_m = cells * double(draft.scene.pack.cell_q) / rules::kUnitsPerMetre;
+  draft.scene.pack.cell_q = toUnits(cell_m);
+  const double rounded_m = double(draft.scene.pack.cell_q) / rules::kUnitsPerMetre;
+  const double size_m = cells * rounded_m;
   if (std::abs(size_m - terrain_m) > 1e-9)
     draft.scene.notes.push_back(
-        fmt::format("thesis.terrainSize: {} m become {} m", plainNumber(terrain_m), plainNumber(size_m)));
+        fmt::format("thesis.terrainSize: cells of {} m rounded to {} m (whole 0.1 mm); {} m become {} m",
+                    plainNumber(cell_m), plainNumber(rounded_m), plainNumber(terrain_m), plainNumber(size_m)));
   const Status status = setWorldSize(draft.scene.pack, size_m, size_m);
   if (!status) thesis.wrong("heightmapSize", status.error());
   return {size_m, size_m};
@@ -68,8 +60,14 @@ WorldSize readSquareWorld(const TableReader& world, TableReader& thesis, SceneDr
 
 WorldSize readWorld(TableReader& world, TableReader& thesis, SceneDraft& draft) {
   if (thesis.has("terrainSize") || thesis.has("heightmapSize")) return readSquareWorld(world, thesis, draft);
-  setCell(world.number("cell_m", {0.0001, 100, "m"}, 0.05), "world.cell_m", draft);
-  const double rounded_m = double(draft.scene.pack.cell_q) / rules::kUnitsPerMetre;
+  const double cell_m = world.number("cell_m", {0.0001, 100, "m"}, 0.05);
+  ScenePack& pack = draft.scene.pack;
+  pack.cell_q = toUnits(cell_m);
+  const double rounded_m = double(pack.cell_q) / rules::kUnitsPerMetre;
+  if (std::abs(rounded_m - cell_m) > 1e-9) {
+    draft.scene.notes.push_back(
+        fmt::format("world.cell_m: {} m rounded to {} m (whole 0.1 mm)", plainNumber(cell_m), plainNumber(rounded_m)));
+  }
   WorldSize size;
   if (world.has("size_m") && world.has("cells")) world.wrong("cells", "give either size_m or cells, not both");
   if (world.has("size_m")) {
@@ -83,7 +81,7 @@ WorldSize readWorld(TableReader& world, TableReader& thesis, SceneDraft& draft) 
     size = {cells[0] * rounded_m, cells[1] * rounded_m};
   }
   if (size.width_m > 0) {
-    const Status status = setWorldSize(draft.scene.pack, size.width_m, size.height_m);
+    const Status status = setWorldSize(pack, size.width_m, size.height_m);
     if (!status) world.wrong(world.has("cells") ? "cells" : "size_m", status.error());
   }
   return size;
