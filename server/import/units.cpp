@@ -1,7 +1,5 @@
 #include "server/import/units.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "shaders/rules/limits.h"
@@ -13,7 +11,5 @@ std::int32_t toUnits(double metres) {
   SPOOR_ASSERT(std::abs(metres) < 2.1e5);
   return std::int32_t(std::llround(metres * rules::kUnitsPerMetre));
 }
-
-std::string plainNumber(double value) { return fmt::format("{:.7g}", value); }
 
 }  // namespace spoor
