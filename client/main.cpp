@@ -28,6 +28,8 @@ struct Arguments {
   std::string folder = ".";
   std::string name = "viewer";
   std::string ground = "snow";
+  std::string shade = "lit";
+  std::int64_t blur_normals = -1;
 };
 
 std::optional<int> numberIn(std::string_view text, int lowest, int highest) {
@@ -66,6 +68,10 @@ Result<RenderSettings> renderSettings(const Arguments& arguments) {
   if (arguments.ground != "snow" && arguments.ground != "sand")
     return Error{fmt::format("--ground \"{}\": want snow or sand", arguments.ground)};
   settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::snow;
+  if (arguments.shade != "lit" && arguments.shade != "normals" && arguments.shade != "columns")
+    return Error{fmt::format("--shade \"{}\": want lit, normals or columns", arguments.shade)};
+  if (arguments.shade != "lit") settings.shade = arguments.shade == "columns" ? Shade::columns : Shade::normals;
+  settings.blur_passes = int(arguments.blur_normals);
   return settings;
 }
 
@@ -110,6 +116,10 @@ int run(int argc, char** argv) {
   options.add("out", "DIR", "where pictures go", &arguments.folder);
   options.add("name", "NAME", "what the server calls this client", &arguments.name);
   options.add("ground", "snow|sand", "what the ground looks like", &arguments.ground);
+  options.add("shade", "lit|normals|columns", "columns: cells round the focus as bars, coloured by height",
+              &arguments.shade);
+  options.add("blur-normals", "passes", "of a 3 x 3 Gaussian over the ground's normals; -1: as the scene says",
+              &arguments.blur_normals, -1, 16);
   options.parseOrExit(argc, argv);
 
   const auto connect = connectOptions(arguments);

@@ -3,6 +3,7 @@
 #include "light.glsl"
 #include "body_shadow.glsl"
 #include "detail.glsl"
+#include "highlight.glsl"
 
 vec3 groundAlbedo() { return frame.world.z == kGroundSand ? vec3(0.60, 0.43, 0.25) : vec3(0.86, 0.88, 0.91); }
 
@@ -18,9 +19,7 @@ vec2 footprintAt(vec3 rel, vec2 rel_cells) {
 }
 
 /// Colour that the ground sends to the eye, with fog; kShadeNormals: its normal.
-vec3 groundColour(vec3 rel) {
-  vec2 rel_cells = rel.xy / frame.scale.x;
-  vec2 footprint = footprintAt(rel, rel_cells);
+vec3 shadedGround(vec3 rel, vec2 rel_cells, vec2 footprint) {
   // Between the shorter and the longer side: blurring by the longer would wipe out tracks at grazing angles.
   Relief relief = reliefAt(rel_cells, 0.6 * sqrt(footprint.x * footprint.y));
   vec3 smooth_normal = normalize(vec3(-relief.gradient, 1.0));
@@ -37,4 +36,10 @@ vec3 groundColour(vec3 rel) {
   float sky = relief.sky * relief.sky;
   vec3 colour = albedo * (kSunLight * lit + skyLight(smooth_normal, groundAlbedo()) * sky);
   return toScreen(withFog(colour, rel));
+}
+
+vec3 groundColour(vec3 rel) {
+  vec2 rel_cells = rel.xy / frame.scale.x;
+  vec2 footprint = footprintAt(rel, rel_cells);
+  return withHighlight(shadedGround(rel, rel_cells, footprint), rel_cells, footprint.y);
 }
