@@ -36,7 +36,8 @@ ColumnCells columnCells(const TerrainView& view, glm::ivec2 focus_cell) {
 }
 
 ColumnRenderer::ColumnRenderer(const ColumnSettings& settings) : settings_(settings) {
-  SPOOR_ASSERT(settings.lowest_q <= settings.highest_q);
+  const bool whole_area = settings.lowest_q == settings.highest_q;
+  SPOOR_ASSERT(whole_area || (settings.lowest_q < settings.middle_q && settings.middle_q < settings.highest_q));
   area_block_ = makeBuffer();
   glNamedBufferStorage(area_block_.name(), sizeof(render::ColumnArea), nullptr, GL_DYNAMIC_STORAGE_BIT);
   heights_ = makeBuffer();
@@ -54,12 +55,13 @@ void ColumnRenderer::draw(const TerrainView& view, glm::ivec2 focus_cell, const 
   const auto [lowest, highest] = std::ranges::minmax_element(cells.height_q);
   const bool fixed = settings_.lowest_q < settings_.highest_q;
   const std::int32_t first_q = fixed ? settings_.lowest_q : *lowest, last_q = fixed ? settings_.highest_q : *highest;
+  const std::int32_t middle_q = fixed ? settings_.middle_q : first_q + (last_q - first_q) / 2;
   // The feet show how thick the ground is, and never that it ends.
   const std::int32_t cell_q = view.base->pack().cell_q;
   const std::int32_t foot_q = std::min(first_q, *lowest) - std::max(2 * cell_q, (last_q - first_q) / 8);
   render::ColumnArea area;
   area.area = {cells.first - frame.origin_cell, cells.count};
-  area.heights = {first_q, last_q, foot_q, 0};
+  area.heights = {first_q, middle_q, last_q, foot_q};
   glNamedBufferSubData(area_block_.name(), 0, sizeof area, &area);
   glBindBufferBase(GL_UNIFORM_BUFFER, render::kColumnAreaBinding, area_block_.name());
   glNamedBufferData(heights_.name(), GLsizeiptr(cells.height_q.size() * sizeof(std::int32_t)), cells.height_q.data(),

@@ -11,9 +11,10 @@ namespace spoor {
 
 /// How cells are shown as columns.
 struct ColumnSettings {
-  // Heights of the first and the last colour (heightColour in shaders/render/height_colour.h), 0.1 mm; both the same:
-  // the lowest and the highest that the area holds.
+  // Heights of the first, the pale middle and the last colour (heightColour in shaders/render/height_colour.h), 0.1 mm,
+  // in rising order; all the same: the lowest and the highest that the area holds, and midway between them.
   std::int32_t lowest_q = 0;
+  std::int32_t middle_q = 0;
   std::int32_t highest_q = 0;
 };
 

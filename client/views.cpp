@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "client/column_renderer.h"
 #include "shaders/rules/limits.h"
 #include "shared/base/assert.h"
 
@@ -201,6 +202,35 @@ Camera aboveView(const TerrainView& view, double aspect) {
   camera.up = {0.0, 1.0, 0.0};
   camera.orthographic_height_m = 1.04 * std::max(size_m.y, size_m.x / aspect);
   camera.focus_m = box.middle_m();
+  return camera;
+}
+
+Camera columnsView(const TerrainView& view) {
+  const double cell_m = view.base->pack().cell_q / kUnits;
+  const ColumnCells cells = columnCells(view, glm::ivec2(liveBox(view).middle_m() / cell_m));
+  const glm::dvec2 middle_m = (glm::dvec2(cells.first) + glm::dvec2(cells.count) * 0.5) * cell_m;
+  const double size_m = glm::max(cells.count.x, cells.count.y) * cell_m;
+  const double ground_m = groundHeight(view, middle_m);
+  // From so far away that columns stand all but parallel; one side of a square faces the eye more than the other.
+  constexpr double kAway = 2.95, kView_deg = 22.0;
+  const glm::dvec3 back(0.40, -0.66, 0.64);
+  Camera camera = cameraLookingAt(glm::dvec3(middle_m, ground_m) + glm::normalize(back) * kAway * size_m,
+                                  {middle_m, ground_m});
+  camera.field_of_view_deg = kView_deg;
+  return camera;
+}
+
+Camera overviewView(const TerrainView& view, double aspect) {
+  const ScenePack& pack = view.base->pack();
+  const glm::dvec2 world_m = glm::dvec2(pack.width_cells, pack.height_cells) * (pack.cell_q / kUnits);
+  const glm::dvec2 middle_m = world_m * 0.5;
+  const double ground_m = groundHeight(view, middle_m);
+  const double size_m = std::max(world_m.y, world_m.x * 1.6 / aspect);
+  constexpr double kView_deg = 38.0;
+  const glm::dvec3 eye_m(middle_m + glm::dvec2(0.0, -1.02 * size_m), ground_m + 0.92 * size_m);
+  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.03 * size_m), ground_m});
+  camera.field_of_view_deg = kView_deg;
+  camera.focus_m = middle_m;
   return camera;
 }
 

@@ -21,6 +21,12 @@ Camera trailsView(const TerrainView& view, double sun_azimuth_deg);
 /// Straight down on all live tiles, north up, orthographic.
 Camera aboveView(const TerrainView& view, double aspect);
 
+/// Down on what a picture of columns shows (columnCells about the middle of the live tiles), from the south and east.
+Camera columnsView(const TerrainView& view);
+
+/// The whole world from the air, from the south.
+Camera overviewView(const TerrainView& view, double aspect);
+
 /// Bodies worth following: the first of each path.
 std::vector<int> leadingBodies(const ScenePack& pack);
 

@@ -11,7 +11,7 @@ layout(location = 0) out vec4 colour_out;
 const float kEdge = 0.05;  // width of an edge's line, in cells
 
 void main() {
-  float side = normal.z > 0.0 ? 1.0 : 0.62 + 0.14 * dot(normal.xy, normalize(frame.sun.xy));
+  float side = normal.z > 0.0 ? 1.0 : (normal.x != 0.0 ? 0.56 : 0.76);  // so that corners show
   vec2 inside = min(on_face.xy, vec2(1.0, on_face.z) - on_face.xy);
   // Feet have no edge; nor has anything whose lines would be finer than a pixel.
   float away = normal.z > 0.0 ? min(inside.x, inside.y) : min(inside.x, on_face.z - on_face.y);

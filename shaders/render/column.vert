@@ -22,7 +22,7 @@ void main() {
   vec2 place = vec2(corner == 1 || corner == 2, corner >= 2);
   float cell_m = frame.scale.x;
   vec2 middle = vec2(columns.area.xy + ivec2(gl_InstanceID, row)) * cell_m;
-  float foot = aboveOrigin(columns.heights.z), head = aboveOrigin(height_in);
+  float foot = aboveOrigin(columns.heights.w), head = aboveOrigin(height_in);
   vec2 ahead = face == 0 ? vec2(1.0, 0.0) : vec2((face & 1) == 1 ? 2 - face : 0, (face & 1) == 0 ? 3 - face : 0);
   vec3 rel;
   if (face == 0) {
@@ -34,7 +34,8 @@ void main() {
   float tall = face == 0 ? 1.0 : max(head - foot, 0.0) / cell_m;
   on_face = vec3(place * vec2(1.0, tall), tall);
   normal = face == 0 ? vec3(0.0, 0.0, 1.0) : vec3(ahead, 0.0);
-  int range = columns.heights.y - columns.heights.x;
-  colour = heightColour(range > 0 ? float(height_in - columns.heights.x) / float(range) : 0.5);
+  bool low = height_in < columns.heights.y;
+  int range = low ? columns.heights.y - columns.heights.x : columns.heights.z - columns.heights.y;
+  colour = heightColour(0.5 + 0.5 * float(height_in - columns.heights.y) / float(max(range, 1)));
   gl_Position = frame.clip_from_rel * vec4(rel, 1.0);
 }

@@ -88,7 +88,7 @@ struct ReliefJob {
 /// What is shown as columns.
 struct ColumnArea {
   ivec4 area;     // first cell x, y, from the origin cell; cells x, y
-  ivec4 heights;  // of the first colour, the last one, and the columns' feet, 0.1 mm
+  ivec4 heights;  // of the first, the middle and the last colour, and of the columns' feet, 0.1 mm
 };
 
 #ifdef __cplusplus
