@@ -3,6 +3,7 @@
 #include <deque>
 #include <exception>
 
+#include "server/named_parameters.h"
 #include "shaders/host/make_backend.h"
 #include "shared/base/json.h"
 #include "shared/base/options.h"
@@ -25,12 +26,19 @@ void printInfo(const SessionReader& reader) {
 
 int info(SessionReader& reader) {
   printInfo(reader);
+  const std::int32_t cell_q = reader.pack().cell_q;
+  Parameters parameters = reader.pack().parameters;
+  std::printf("parameters at the start\n");
+  for (const std::string& line : describeParameters(parameters, cell_q)) std::printf("  %s\n", line.c_str());
   TickRecord last;
   for (;;) {
     auto record = reader.next();
     if (!record) return fail(record.error());
     if (!*record) break;
     last = std::move(**record);
+    if (!last.parameters) continue;
+    std::printf("tick %d: %s\n", last.tick, describeChange(parameters, *last.parameters, cell_q).c_str());
+    parameters = *last.parameters;
   }
   std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick,
               reader.truncated() ? " (the file ends within the next)" : "", hexText(last.state_hash).c_str(),

@@ -77,6 +77,9 @@ std::string tableOf(const SessionReport& report) {
                             report.ledger.events, report.ledger.error()));
   if (figures.too_fast_ticks > 0)
     row("too fast", fmt::format("in {} ticks a body outran its sub-steps", figures.too_fast_ticks));
+  if (figures.kept_back > 0)
+    row("kept back",
+        fmt::format("{} units of soil found no room beside bodies, summed over sub-steps", figures.kept_back));
   row("hash server", hexText(report.server_hash));
   for (const ClientReport& client : report.clients)
     row(fmt::format("hash {}", client.name),
@@ -117,6 +120,7 @@ JsonWriter jsonOf(const SessionReport& report) {
   json.value("events", report.ledger.events);
   json.value("error", report.ledger.error());
   json.end();
+  json.value("kept_back", report.figures.kept_back);
   json.hash("server_hash", report.server_hash);
   json.beginArray("client_hashes");
   for (const ClientReport& client : report.clients) {

@@ -2,13 +2,16 @@
 #include <spdlog/async.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
+#include "server/console.h"
 #include "server/report.h"
 #include "server/scene_source.h"
 #include "shaders/host/make_backend.h"
@@ -19,7 +22,9 @@ namespace {
 struct Settings {
   SceneSource source;
   std::string backend = "auto", gl_device = "auto", session, json;
-  bool list_devices = false;
+  bool list_devices = false, console = false;
+  std::vector<std::string> set;
+  std::vector<ParameterChange> changes;  // of `set`
   std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
   double rate_hz = -1, wait_s = 60;
 };
@@ -41,7 +46,17 @@ void parse(int argc, char** argv, Settings& settings) {
   options.add("wait-clients", "N", "begin when so many clients are in sync", &settings.wait_clients, 0, 1000);
   options.add("wait", "S", "how long to wait for them", &settings.wait_s, 0.0, 86400.0);
   options.add("json", "FILE", "also write the table's figures there", &settings.json);
+  options.add("set", "T:NAME=VALUE,...", "from tick T on; names as in a scene's [thesis]", &settings.set);
+  options.addFlag("console", "read lines NAME=VALUE,... from standard input, for the next tick", &settings.console);
   options.parseOrExit(argc, argv);
+  for (const std::string& text : settings.set) {
+    auto change = parseChange(text);
+    if (!change) {
+      std::fprintf(stderr, "spoor-server: --set '%s': %s (see --help)\n", text.c_str(), change.error().c_str());
+      std::exit(2);
+    }
+    settings.changes.push_back(std::move(*change));
+  }
 }
 
 /// Logging on a thread of its own that drops its oldest lines rather than hold a tick up.
@@ -69,6 +84,19 @@ LoadedScene loadSeeded(const Settings& settings) {
   return scene;
 }
 
+/// What is known to be wrong before the first tick is said then: changes that do not go with the pack, or with each
+/// other.
+void checkChanges(const ScenePack& pack, std::vector<ParameterChange> changes) {
+  std::ranges::stable_sort(changes, {}, &ParameterChange::tick);
+  Parameters parameters = pack.parameters;
+  std::vector<std::string> notes;
+  for (const ParameterChange& change : changes) {
+    const auto changed = changeParameters(pack, parameters, change.values, notes);
+    if (!changed) throw std::runtime_error(fmt::format("--set, tick {}: {}", change.tick, changed.error()));
+    parameters = *changed;
+  }
+}
+
 void awaitClients(const SessionHost& host, const Settings& settings) {
   if (settings.wait_clients == 0) return;
   spdlog::info("waiting for {} clients", settings.wait_clients);
@@ -91,6 +119,7 @@ int run(int argc, char** argv) {
   setUpLog();
   LoadedScene scene = loadSeeded(settings);
   for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
+  checkChanges(scene.pack, settings.changes);
   const BaseTerrain base(scene.pack);
   const auto say = [](const std::string& line) { spdlog::info(line); };
   Simulation simulation(base, scene.id,
@@ -110,8 +139,19 @@ int run(int argc, char** argv) {
   LoopOptions loop;
   loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
   loop.rate_hz = settings.rate_hz < 0 ? scene.pack.ticks_per_second : settings.rate_hz;
+  loop.changes = settings.changes;
+  for (const ParameterChange& change : loop.changes)
+    if (change.tick > loop.ticks)
+      spdlog::warn("--set, tick {}: the session ends with tick {}", change.tick, loop.ticks);
+  ChangeQueue typed;
+  std::optional<Console> console;
+  if (settings.console) {
+    loop.console = &typed;
+    console.emplace(STDIN_FILENO, typed, say);
+  }
   SessionReport report;
   report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), say);
+  console.reset();
   report.clients = host->finish(30);
   report.scene = scene.pack.name;
   report.pack_id = toText(scene.id);

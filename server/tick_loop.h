@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "server/parameter_changes.h"
 #include "server/session_host.h"
 #include "shared/codec/session.h"
 #include "shared/sim/simulation.h"
@@ -12,7 +13,9 @@ namespace spoor {
 
 struct LoopOptions {
   std::int32_t ticks = 0;
-  double rate_hz = 60;  // ticks per second; 0: as fast as they go
+  double rate_hz = 60;                        // ticks per second; 0: as fast as they go
+  std::vector<ParameterChange> changes = {};  // of one tick: in this order; before those of the console
+  ChangeQueue* console = nullptr;             // may be nullptr
 };
 
 /// Figures of a session: of its last kTicksKept ticks, so that a long session does not grow, in no particular order.
@@ -25,11 +28,13 @@ struct LoopFigures {
   std::int32_t late_ticks = 0;  // that began after their time
   std::int32_t too_fast_ticks = 0;
   std::int32_t unbalanced_ticks = 0;  // whose ledger error was not 0
+  std::int64_t kept_back = 0;         // TickEffect::kept_back of all ticks
   double wall_s = 0;
 };
 
-/// Runs a session's ticks: poses from the script, one step, then to the network and the session file. Waits for
-/// nothing but the clock. `host` and `writer` may be nullptr. Progress, about once a second, goes to `say`.
+/// Runs a session's ticks: poses from the script, parameters where they change, one step, then to the network and the
+/// session file. Waits for nothing but the clock. `host` and `writer` may be nullptr. Progress, about once a second,
+/// goes to `say`, and so does each change of parameters. One that cannot be is said and changes nothing.
 LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const LoopOptions& options, SessionHost* host,
                      SessionWriter* writer, const std::function<void(const std::string&)>& say);
 

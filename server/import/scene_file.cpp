@@ -9,6 +9,7 @@
 #include "server/import/pack_maker.h"
 #include "server/import/scene_parts.h"
 #include "server/import/table_reader.h"
+#include "server/import/thesis_table.h"
 #include "server/import/units.h"
 #include "shaders/rules/limits.h"
 
@@ -31,7 +32,34 @@ struct WorldSize {
   double width_m = 0, height_m = 0;
 };
 
-WorldSize readWorld(TableReader& world, SceneDraft& draft) {
+/// The world as [thesis] says it: a square, and cells along its side. Of the two the number of cells is exact.
+WorldSize readSquareWorld(const TableReader& world, TableReader& thesis, SceneDraft& draft) {
+  for (const char* key : {"terrainSize", "heightmapSize"}) {
+    for (const char* other : {"cell_m", "size_m", "cells"}) refuseBoth(thesis, key, world, other);
+    if (!thesis.has(key)) thesis.wrong(key, "missing; terrainSize and heightmapSize go together");
+  }
+  const double terrain_m = thesis.number("terrainSize", namedRange("terrainSize"), 1);
+  const auto cells = double(thesis.integer("heightmapSize", namedRange("heightmapSize"), 1));
+  const double cell_m = terrain_m / cells;
+  if (cell_m < 0.00005 || cell_m > 100) {
+    thesis.wrong("heightmapSize", fmt::format("{} cells in {} m are {} m each, not within 0.0001 .. 100 m", cells,
+                                              plainNumber(terrain_m), plainNumber(cell_m)));
+    return {};
+  }
+  draft.scene.pack.cell_q = toUnits(cell_m);
+  const double rounded_m = double(draft.scene.pack.cell_q) / rules::kUnitsPerMetre;
+  const double size_m = cells * rounded_m;
+  if (std::abs(size_m - terrain_m) > 1e-9)
+    draft.scene.notes.push_back(
+        fmt::format("thesis.terrainSize: cells of {} m rounded to {} m (whole 0.1 mm); {} m become {} m",
+                    plainNumber(cell_m), plainNumber(rounded_m), plainNumber(terrain_m), plainNumber(size_m)));
+  const Status status = setWorldSize(draft.scene.pack, size_m, size_m);
+  if (!status) thesis.wrong("heightmapSize", status.error());
+  return {size_m, size_m};
+}
+
+WorldSize readWorld(TableReader& world, TableReader& thesis, SceneDraft& draft) {
+  if (thesis.has("terrainSize") || thesis.has("heightmapSize")) return readSquareWorld(world, thesis, draft);
   const double cell_m = world.number("cell_m", {0.0001, 100, "m"}, 0.05);
   ScenePack& pack = draft.scene.pack;
   pack.cell_q = toUnits(cell_m);
@@ -57,14 +85,6 @@ WorldSize readWorld(TableReader& world, SceneDraft& draft) {
     if (!status) world.wrong(world.has("cells") ? "cells" : "size_m", status.error());
   }
   return size;
-}
-
-void readSoil(TableReader& soil, SceneDraft& draft) {
-  ScenePack& pack = draft.scene.pack;
-  setReposeAngle(pack, soil.number("repose_deg", {0, 89, "degrees"}, 35), draft.scene.notes);
-  pack.parameters.obstacle_threshold_q = toUnits(soil.number("obstacle_threshold_m", {0, 100, "m"}, 0.001));
-  pack.parameters.sweeps_per_tick = std::int32_t(soil.integer("sweeps_per_tick", {0, 64, ""}, 10));
-  soil.finish();
 }
 
 void readNoise(TableReader& base, const WorldSize& size, TableReader& world, ScenePack& pack) {
@@ -115,11 +135,16 @@ void readDemBase(TableReader& base, const SceneErrors& errors, WorldSize size, T
 /// Reads all tables; on an error, which SceneErrors holds, the draft is left half made.
 void readScene(TableReader& file, const SceneErrors& errors, const std::filesystem::path& path, SceneDraft& draft) {
   readHead(file, path, draft.scene.pack);
+  TableReader thesis = file.table("thesis");
+  const std::vector<NamedValue> named = readNamedValues(thesis);
+  thesis.finish();
+  if (errors.failed()) return;
   TableReader world = file.table("world");
-  const WorldSize size = readWorld(world, draft);
+  const WorldSize size = readWorld(world, thesis, draft);
   world.finish();
+  if (errors.failed()) return;
   TableReader soil = file.table("soil");
-  readSoil(soil, draft);
+  readSoil(soil, thesis, named, draft.scene.pack, draft.scene.notes);
   TableReader base = file.table("base");
   const std::string kind = base.choice("kind", {"noise", "dem"});
   draft.scene.pack.soil_depth_q = toUnits(base.number("soil_depth_m", {0, 20000, "m"}, 1));

@@ -64,11 +64,12 @@ class TableReader {
   void finish();
 
   const std::string& where() const { return where_; }
+  /// "world.cell_m"
+  std::string keyPath(std::string_view key) const;
 
  private:
   const toml::node* find(std::string_view key);
   std::optional<double> numberOf(const toml::node& node, std::string_view key, const Range& range);
-  std::string keyPath(std::string_view key) const;
   void missing(std::string_view key);
 
   const toml::table& table_;

@@ -1,0 +1,66 @@
+#include "server/console.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+namespace spoor {
+
+Console::Console(int input, ChangeQueue& queue, std::function<void(const std::string&)> say)
+    : input_(input), queue_(queue), say_(std::move(say)) {
+  if (::pipe(stop_) != 0) throw std::runtime_error("the console cannot open a pipe");
+  thread_ = std::thread([this] { serve(); });
+}
+
+Console::~Console() {
+  const char byte = 0;
+  while (::write(stop_[1], &byte, 1) < 0 && errno == EINTR) {
+  }
+  thread_.join();
+  ::close(stop_[0]);
+  ::close(stop_[1]);
+}
+
+void Console::serve() {
+  std::string line;
+  bool too_long = false;
+  for (;;) {
+    pollfd ready[2] = {{input_, POLLIN, 0}, {stop_[0], POLLIN, 0}};
+    if (::poll(ready, 2, -1) < 0) {
+      if (errno == EINTR) continue;
+      return say_("console: cannot be read any more");
+    }
+    if (ready[1].revents != 0) return;
+    char bytes[1024];
+    const auto count = ::read(input_, bytes, sizeof bytes);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count <= 0) {  // the end: what stands there without a line's end counts too
+      if (!line.empty() && !too_long) onLine(line);
+      return;
+    }
+    for (const char byte : std::string_view(bytes, std::size_t(count))) {
+      if (byte != '\n') {
+        too_long = too_long || line.size() >= kLineLimit;
+        if (!too_long) line += byte;
+        continue;
+      }
+      if (too_long)
+        say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
+      else if (line.find_first_not_of(" \t\r") != std::string::npos)
+        onLine(line);
+      line.clear();
+      too_long = false;
+    }
+  }
+}
+
+void Console::onLine(const std::string& line) {
+  auto values = parseAssignments(line);
+  if (!values) return say_("console: " + values.error() + "; nothing changes");
+  if (!queue_.push({0, std::move(*values)}))
+    say_("console: " + std::to_string(ChangeQueue::kLimit) + " changes wait for a tick already; nothing changes");
+}
+
+}  // namespace spoor

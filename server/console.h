@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "server/parameter_changes.h"
+
+namespace spoor {
+
+/// Reads lines "NAME=VALUE[,NAME=VALUE...]" from a file descriptor on a thread of its own, for as long as it lives or
+/// until the input ends, and queues them as changes. Safe on untrusted input: a bad line is said and changes nothing.
+class Console {
+ public:
+  static constexpr std::size_t kLineLimit = 4096;  // bytes; a longer line is a bad one
+
+  /// @param input  stays open, and the caller's; 0 is standard input
+  /// @param queue  outlives this
+  /// @param say    called from the console's thread
+  Console(int input, ChangeQueue& queue, std::function<void(const std::string&)> say);
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+ private:
+  void serve();
+  void onLine(const std::string& line);
+
+  int input_;
+  int stop_[2];  // a pipe: what is written to the second end wakes the thread, to leave
+  ChangeQueue& queue_;
+  std::function<void(const std::string&)> say_;
+  std::thread thread_;
+};
+
+}  // namespace spoor

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "server/import/table_reader.h"
+#include "server/named_parameters.h"
+
+namespace spoor {
+
+/// Reads a scene's [thesis] table: the values given there, each within its range. What is wrong goes to the reader's
+/// SceneErrors.
+std::vector<NamedValue> readNamedValues(TableReader& thesis);
+
+/// The range of a parameter that has one.
+Range namedRange(std::string_view name);
+
+/// Reports two keys of two tables that say the same, where both are given.
+void refuseBoth(TableReader& thesis, std::string_view key, const TableReader& other, std::string_view other_key);
+
+/// Compiles a scene's [soil] and [thesis] to its pack, whose cell size is set. A preset comes first, the keys beside it
+/// override it. Slopes rest up to 35 degrees where neither table says anything.
+void readSoil(TableReader& soil, TableReader& thesis, const std::vector<NamedValue>& named, ScenePack& pack,
+              std::vector<std::string>& notes);
+
+}  // namespace spoor
