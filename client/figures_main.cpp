@@ -47,7 +47,8 @@ constexpr DisplacementFigure kDisplacementFigures[] = {{"5.1", "iterative", Disp
                                                        {"5.3", "spread", Displacement::spread}};
 constexpr std::pair<const char*, Metric> kMetrics[] = {
     {"euclidean", Metric::euclidean}, {"manhattan", Metric::manhattan}, {"chebyshev", Metric::chebyshev}};
-// Untouched ground is pale, the bottom of the box's hole blue, the highest wall of all nine pictures all but the last red.
+// Untouched ground is pale, the bottom of the box's hole blue, the highest wall of all nine pictures all but the last
+// red.
 constexpr ColumnSettings kFigureColours{-1000, 0, 8000};
 
 constexpr std::array<std::string_view, 5> kLooks{"trails", "follow", "above", "overview", "columns"};
@@ -109,9 +110,9 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
   if (arguments.everything_active) pack->parameters.active_areas = 0;
   if (const Status valid = validatePack(*pack); !valid) return Error{arguments.pack + ": " + valid.error()};
   if (arguments.look == "follow" && pack->bodies.empty()) return Error{arguments.pack + ": no body to follow"};
-  const std::string name =
-      arguments.name.empty() ? std::filesystem::path(arguments.pack).stem().string() + "_" + arguments.look
-                             : arguments.name;
+  const std::string name = arguments.name.empty()
+                               ? std::filesystem::path(arguments.pack).stem().string() + "_" + arguments.look
+                               : arguments.name;
   const std::int32_t tick = arguments.tick < 0 ? pack->default_ticks : std::int32_t(arguments.tick);
   auto backend = backendFor(arguments);
   if (!backend) return Error{backend.error()};
@@ -149,8 +150,9 @@ int refuse(const std::string& why) {
 
 int run(int argc, char** argv) {
   Arguments arguments;
-  Options options("spoor-figures",
-                  "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
+  Options options(
+      "spoor-figures",
+      "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
   options.add("out", "DIR", "where pictures go", &arguments.folder);
   options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3", &arguments.only);
   options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);

@@ -19,8 +19,8 @@ namespace {
 constexpr double kHaze_m = 3000.0;  // how far one sees on a clear day, to 1/e
 constexpr double kFogShare = 0.75;  // of the outermost window's reach: what lies there is all but hidden
 
-// Vertices that the patches of one draw call may make. llvmpipe (Mesa 22.3) loses triangles of calls that make more than
-// 65 536, and slows down long before; a patch of 64 samples makes up to 4225.
+// Vertices that the patches of one draw call may make. llvmpipe (Mesa 22.3) loses triangles of calls that make more
+// than 65 536, and slows down long before; a patch of 64 samples makes up to 4225.
 constexpr int kDrawVertices = 8 * 65 * 65;
 
 glm::dvec3 sunOf(const RenderSettings& settings) {
@@ -127,7 +127,8 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
   const double fog_reach_m = kFogShare * terrain_.reachCells() * cell_m_;
   block.scale = {float(cell_m_), frame.pixels_per_radian, float(settings_.triangle_px),
                  float(std::max(2.6 / fog_reach_m, 1.0 / kHaze_m))};
-  block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count), highlight_.empty() ? 0.0f : 1.0f};
+  block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count),
+                highlight_.empty() ? 0.0f : 1.0f};
   block.origin = {frame.origin_cell, frame.origin_height_q, terrain_.settings().fine_patch_samples};
   block.world = {pack_->width_cells, pack_->height_cells,
                  settings_.ground == Ground::sand ? render::kGroundSand : render::kGroundSnow,

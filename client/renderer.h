@@ -25,8 +25,8 @@ struct RenderSettings {
   int coarse_pages = 12;           // pages of 64 samples along a side of each coarser one; see TerrainLevels
   double sun_azimuth_deg = 135.0;  // from east towards north: north-west, as in hill-shaded maps
   double sun_elevation_deg = 21.0;
-  int blur_passes = -1;            // of the ground's normals, 0 .. 16; -1: as the pack says
-  int patches_per_row = -1;        // of the ground's mesh, 0 .. 4096, see finePatchSamples; -1: as the pack says
+  int blur_passes = -1;      // of the ground's normals, 0 .. 16; -1: as the pack says
+  int patches_per_row = -1;  // of the ground's mesh, 0 .. 4096, see finePatchSamples; -1: as the pack says
   double triangle_px = 8.0;  // wanted side of a triangle on the screen
   double detail = 1.0;       // strength of the grain finer than a cell, 0 .. 1
   Ground ground = Ground::snow;

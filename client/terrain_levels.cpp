@@ -236,6 +236,8 @@ std::array<LevelWindow, kLevelCount> TerrainLevels::windows() const {
   return result;
 }
 
-int TerrainLevels::reachCells() const { return (settings_.coarse_pages / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1); }
+int TerrainLevels::reachCells() const {
+  return (settings_.coarse_pages / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1);
+}
 
 }  // namespace spoor

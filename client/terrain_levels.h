@@ -35,8 +35,8 @@ struct TerrainSettings {
 };
 
 /// Side of the finest level's patches for a terrain of that many patches in a row (Persson's numVerticesPerRow):
-/// the largest power of two with which a row of the world has at least `patches_per_row` of them, within 4 cells and the
-/// 64 that tessellation can cut to single cells; 0 patches: 64.
+/// the largest power of two with which a row of the world has at least `patches_per_row` of them, within 4 cells and
+/// the 64 that tessellation can cut to single cells; 0 patches: 64.
 int finePatchSamples(std::int32_t width_cells, std::int32_t patches_per_row);
 
 /// One patch to draw, as the shaders read it: first cell x, y; level; flags.

@@ -214,8 +214,8 @@ Camera columnsView(const TerrainView& view) {
   // From so far away that columns stand all but parallel; one side of a square faces the eye more than the other.
   constexpr double kAway = 2.95, kView_deg = 22.0;
   const glm::dvec3 back(0.40, -0.66, 0.64);
-  Camera camera = cameraLookingAt(glm::dvec3(middle_m, ground_m) + glm::normalize(back) * kAway * size_m,
-                                  {middle_m, ground_m});
+  Camera camera =
+      cameraLookingAt(glm::dvec3(middle_m, ground_m) + glm::normalize(back) * kAway * size_m, {middle_m, ground_m});
   camera.field_of_view_deg = kView_deg;
   return camera;
 }

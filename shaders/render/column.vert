@@ -1,11 +1,11 @@
 // Columns, vertex stage: a cell as a bar from the feet to its height; the top and four sides, no bottom.
-// In: an instance a cell of one row of the area, its height [0.1 mm]. Out: place on the face, the cell's colour, normal.
+// In: an instance a cell of one row of the area, its height [0.1 mm]. Out: place on the face, colour, normal.
 #version 450 core
 #include "frame.h"
 #include "height_colour.h"
 #include "../rules/limits.h"
-#include "column.glsl"
 
+layout(std140, binding = kColumnAreaBinding) uniform ColumnAreaBlock { ColumnArea columns; };
 layout(location = 0) in int height_in;
 layout(location = 0) uniform int row;
 out vec3 on_face;  // along the face, up the face, height of the face over its width

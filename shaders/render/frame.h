@@ -40,10 +40,10 @@ RENDER_CONST kGroundSnow = 0;
 RENDER_CONST kGroundSand = 1;
 
 // Binding points.
-RENDER_CONST kFrameBinding = 0;      // uniform block
-RENDER_CONST kReliefJobBinding = 1;  // uniform block
+RENDER_CONST kFrameBinding = 0;       // uniform block
+RENDER_CONST kReliefJobBinding = 1;   // uniform block
 RENDER_CONST kColumnAreaBinding = 2;  // uniform block
-RENDER_CONST kFineHeightUnit = 0;    // texture units
+RENDER_CONST kFineHeightUnit = 0;     // texture units
 RENDER_CONST kCoarseHeightUnit = 1;
 RENDER_CONST kFineReliefUnit = 2;
 RENDER_CONST kCoarseReliefUnit = 3;
@@ -71,9 +71,9 @@ struct Frame {
   vec4 ray_forward;      // w: depth * away [m]; orthographic: away of depth 0 [m]
   vec4 sun;              // towards the sun; w: tangent of its elevation
   vec4 scale;            // cell [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
-  vec4 look;             // strength of the fine detail, 0 .. 1; the shadow map's texel [m]; samples a pixel; strength of marks
-  ivec4 origin;          // cell x, y; height, 0.1 mm; samples along a patch of level 0
-  ivec4 world;           // cells x, y; kGround*; kShade*
+  vec4 look;     // strength of the fine detail, 0 .. 1; the shadow map's texel [m]; samples a pixel; strength of marks
+  ivec4 origin;  // cell x, y; height, 0.1 mm; samples along a patch of level 0
+  ivec4 world;   // cells x, y; kGround*; kShade*
   LevelWindow levels[kLevelCount];
 };
 
