@@ -34,10 +34,10 @@ struct WorldSize {
 
 /// The world as [thesis] says it: a square, and cells along its side. Of the two the number of cells is exact.
 WorldSize readSquareWorld(const TableReader& world, TableReader& thesis, SceneDraft& draft) {
-  for (const char* key : {"terrainSize", "heightmapSize"}) {
+  for (const char* key : {"terrainSize", "heightmapSize"})
     for (const char* other : {"cell_m", "size_m", "cells"}) refuseBoth(thesis, key, world, other);
+  for (const char* key : {"terrainSize", "heightmapSize"})
     if (!thesis.has(key)) thesis.wrong(key, "missing; terrainSize and heightmapSize go together");
-  }
   const double terrain_m = thesis.number("terrainSize", namedRange("terrainSize"), 1);
   const auto cells = double(thesis.integer("heightmapSize", namedRange("heightmapSize"), 1));
   const double cell_m = terrain_m / cells;

@@ -14,6 +14,9 @@ std::int32_t toUnits(double metres) {
   return std::int32_t(std::llround(metres * rules::kUnitsPerMetre));
 }
 
-std::string plainNumber(double value) { return fmt::format("{:.7g}", value); }
+std::string plainNumber(double value) {
+  const bool is_whole = std::abs(value) < 1e9 && value == std::floor(value);
+  return is_whole ? fmt::format("{:.0f}", value) : fmt::format("{:.7g}", value);
+}
 
 }  // namespace spoor
