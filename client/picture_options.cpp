@@ -25,7 +25,7 @@ std::optional<int> sideOf(std::string_view text) {
 
 void addPictureOptions(Options& options, PictureArguments& arguments) {
   options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
-  options.add("ground", "snow|sand", "what the ground looks like", &arguments.ground);
+  options.add("ground", "snow|sand|mud", "what the ground looks like", &arguments.ground);
   options.add("blur-normals", "PASSES", "of a 3 x 3 Gaussian over the ground's normals; -1: as the scene says",
               &arguments.blur_normals, -1, render::kBlurPassesLimit);
 }
@@ -40,9 +40,9 @@ Result<RenderSettings> pictureSettings(const PictureArguments& arguments) {
     return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
   settings.width_px = *width;
   settings.height_px = *height;
-  if (arguments.ground != "snow" && arguments.ground != "sand")
-    return Error{fmt::format("--ground \"{}\": want snow or sand", arguments.ground)};
-  settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::snow;
+  if (arguments.ground != "snow" && arguments.ground != "sand" && arguments.ground != "mud")
+    return Error{fmt::format("--ground \"{}\": want snow, sand or mud", arguments.ground)};
+  if (arguments.ground != "snow") settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::mud;
   settings.blur_passes = int(arguments.blur_normals);
   return settings;
 }

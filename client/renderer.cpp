@@ -29,6 +29,11 @@ glm::dvec3 sunOf(const RenderSettings& settings) {
   return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)};
 }
 
+int groundCode(Ground ground) {
+  if (ground == Ground::sand) return render::kGroundSand;
+  return ground == Ground::mud ? render::kGroundMud : render::kGroundSnow;
+}
+
 int shadeCode(Shade shade) {
   if (shade == Shade::columns) return render::kShadeColumns;
   return shade == Shade::normals ? render::kShadeNormals : render::kShadeLit;
@@ -130,9 +135,7 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
   block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count),
                 highlight_.empty() ? 0.0f : 1.0f};
   block.origin = {frame.origin_cell, frame.origin_height_q, terrain_.settings().fine_patch_samples};
-  block.world = {pack_->width_cells, pack_->height_cells,
-                 settings_.ground == Ground::sand ? render::kGroundSand : render::kGroundSnow,
-                 shadeCode(settings_.shade)};
+  block.world = {pack_->width_cells, pack_->height_cells, groundCode(settings_.ground), shadeCode(settings_.shade)};
   const auto windows = terrain_.windows();
   std::copy(windows.begin(), windows.end(), block.levels);
   glNamedBufferSubData(frame_block_.name(), 0, sizeof block, &block);

@@ -13,7 +13,7 @@
 
 namespace spoor {
 
-enum class Ground { snow, sand };
+enum class Ground { snow, sand, mud };
 /// columns: every cell round the focus as a vertical bar, coloured by its height, and nothing else of the ground.
 enum class Shade { lit, normals, columns };
 

@@ -16,6 +16,7 @@ namespace spoor {
 namespace {
 
 constexpr double kUnits = rules::kUnitsPerMetre;
+constexpr double kSmallestSize_cells = 3.0;  // a view is as wide as bodies are large, but never closer than this
 
 struct Box {
   glm::dvec2 low_m, high_m;
@@ -141,8 +142,8 @@ Camera followView(const TerrainView& view, int body_index) {
   const ScenePack& pack = view.base->pack();
   SPOOR_ASSERT(body_index >= 0 && std::size_t(body_index) < view.state->poses.size());
   const Pose& pose = view.state->poses[std::size_t(body_index)];
-  const double size_m =
-      std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index), 8.0 * pack.cell_q / kUnits);
+  const double size_m = std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index),
+                                 kSmallestSize_cells * pack.cell_q / kUnits);
   const double heading = double(pose.yaw) / 65536.0 * 2.0 * std::numbers::pi;
   const glm::dvec2 ahead(std::cos(heading), std::sin(heading));
   const glm::dvec2 aside(-ahead.y, ahead.x);
@@ -157,7 +158,7 @@ Camera followView(const TerrainView& view, int body_index) {
 Camera trailsView(const TerrainView& view, double sun_azimuth_deg) {
   const ScenePack& pack = view.base->pack();
   const glm::dvec2 middle_m = tracksMiddle(view);
-  double size_m = 16.0 * pack.cell_q / kUnits;
+  double size_m = kSmallestSize_cells * pack.cell_q / kUnits;
   for (const int body : leadingBodies(pack))
     size_m = std::max(size_m, sizeOnPath(pack, pack.bodies[std::size_t(body)].path_index));
   const double ground_m = groundHeight(view, middle_m);
@@ -226,9 +227,9 @@ Camera overviewView(const TerrainView& view, double aspect) {
   const glm::dvec2 middle_m = world_m * 0.5;
   const double ground_m = groundHeight(view, middle_m);
   const double size_m = std::max(world_m.y, world_m.x * 1.6 / aspect);
-  constexpr double kView_deg = 38.0;
-  const glm::dvec3 eye_m(middle_m + glm::dvec2(0.0, -1.02 * size_m), ground_m + 0.92 * size_m);
-  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.03 * size_m), ground_m});
+  constexpr double kView_deg = 34.0;
+  const glm::dvec3 eye_m(middle_m + glm::dvec2(0.0, -0.98 * size_m), ground_m + 1.15 * size_m);
+  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.02 * size_m), ground_m});
   camera.field_of_view_deg = kView_deg;
   camera.focus_m = middle_m;
   return camera;

@@ -38,6 +38,7 @@ RENDER_CONST kShadeNormals = 1;
 RENDER_CONST kShadeColumns = 2;
 RENDER_CONST kGroundSnow = 0;
 RENDER_CONST kGroundSand = 1;
+RENDER_CONST kGroundMud = 2;
 
 // Binding points.
 RENDER_CONST kFrameBinding = 0;       // uniform block

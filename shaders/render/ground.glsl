@@ -1,11 +1,15 @@
-// How the ground looks at a place: snow or sand under a low sun.
+// How the ground looks at a place: snow, sand or mud under a low sun.
 #include "relief.glsl"
 #include "light.glsl"
 #include "body_shadow.glsl"
 #include "detail.glsl"
 #include "highlight.glsl"
 
-vec3 groundAlbedo() { return frame.world.z == kGroundSand ? vec3(0.60, 0.43, 0.25) : vec3(0.86, 0.88, 0.91); }
+vec3 groundAlbedo() {
+  if (frame.world.z == kGroundSand) return vec3(0.60, 0.43, 0.25);
+  if (frame.world.z == kGroundMud) return vec3(0.20, 0.135, 0.085);
+  return vec3(0.86, 0.88, 0.91);
+}
 
 /// Sides of a pixel's footprint on the ground [cells]: the shorter and the longer.
 vec2 footprintAt(vec3 rel, vec2 rel_cells) {

@@ -1,4 +1,4 @@
-// Tiles that are marked: tinted, with a line round what they cover together.
+// Tiles that are marked: tinted, with a line round what they cover together and fainter ones between them.
 layout(binding = kHighlightUnit) uniform sampler2D highlight_mask;  // a texel a tile, round the origin cell's; a torus
 
 const vec3 kHighlight = vec3(1.0, 0.36, 0.05);
@@ -20,5 +20,6 @@ vec3 withHighlight(vec3 colour, vec2 rel_cells, float footprint_cells) {
   bool line = (low.x < width && !marked(tile - ivec2(1, 0))) || (low.y < width && !marked(tile - ivec2(0, 1))) ||
               (64.0 - low.x < width && !marked(tile + ivec2(1, 0))) ||
               (64.0 - low.y < width && !marked(tile + ivec2(0, 1)));
-  return mix(colour, kHighlight, (line ? 0.9 : 0.38) * frame.look.w);
+  bool seam = min(low.x, low.y) < 0.5 * width || max(low.x, low.y) > 64.0 - 0.5 * width;
+  return mix(colour, kHighlight, (line ? 0.9 : (seam ? 0.6 : 0.38)) * frame.look.w);
 }
