@@ -51,6 +51,9 @@ constexpr std::pair<const char*, Metric> kMetrics[] = {
 // red.
 constexpr ColumnSettings kFigureColours{-1000, 0, 8000};
 
+// From far above, dunes and tracks are mere shades: the longer their shadows, the better.
+constexpr double kLowSun_deg = 12.0;
+
 constexpr std::array<std::string_view, 5> kLooks{"trails", "follow", "above", "overview", "columns"};
 
 Result<std::unique_ptr<Backend>> backendFor(const Arguments& arguments) {
@@ -120,6 +123,7 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
   if (const Status run = scene.runTo(tick); !run) return Error{arguments.pack + ": " + run.error()};
 
   if (arguments.look == "columns") settings.shade = Shade::columns;
+  if (arguments.look == "overview") settings.sun_elevation_deg = kLowSun_deg;
   settings.columns = {-std::int32_t(arguments.range_mm) * 10, 0, std::int32_t(arguments.range_mm) * 10};
   settings.bodies = !arguments.no_bodies;
   Renderer renderer(scene.pack(), settings);
