@@ -9,31 +9,39 @@ namespace spoor::test {
 namespace {
 
 /// No soil under bedrock; nothing above a body's underside but what found no room.
-void checkCells(const World& world, const Oracle& oracle) {
+void checkCells(const Oracle& oracle) {
   const DenseWorld& cells = oracle.world();
   for (std::size_t i = 0; i < cells.height.size(); ++i) ASSERT_GE(cells.height[i], cells.bedrock[i]) << "cell " << i;
   if (oracle.activeTiles().empty()) return;
-  const auto overlap = oracleOverlap(cells, world.pack.parameters.obstacle_threshold_q);
+  const auto overlap = oracleOverlap(cells, oracle.parameters().obstacle_threshold_q);
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     const bool fine = overlap[i] <= 0 || std::ranges::binary_search(oracle.crowdedCells(), i);
     ASSERT_TRUE(fine) << "cell " << i << " reaches into a body";
   }
 }
 
+void checkCounts(const TickEffect& effect, const Oracle& oracle) {
+  ASSERT_EQ(effect.active_cells, std::int64_t(oracle.activeTiles().size()) * rules::kTileCells);
+  ASSERT_EQ(effect.penetrating_cells, oracle.penetratingCells());
+  ASSERT_EQ(effect.kept_back, oracle.keptBack());
+  if (oracle.parameters().slopes == SlopeRule::exchange) return;  // backends leave out pairs that are settled
+  ASSERT_EQ(effect.pairs_visited, 4 * effect.active_cells * oracle.parameters().sweeps_per_tick);
+}
+
 void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
-  RandomWorld random = randomWorld(seed, backend_case.slow() ? 8 : 20);
+  const RandomWorld random = randomWorld(seed, backend_case.slow() ? 8 : 20);
   SCOPED_TRACE(random.description);
-  const World world(std::move(random.pack));
+  const World world(random.pack);
   Simulation simulation = world.simulateOn(backend_case);
   Oracle oracle(world.base, world.id);
-  for (const auto& poses : random.ticks) {
-    const auto result = simulation.step(poses);
+  for (std::size_t tick = 0; tick < random.ticks.size(); ++tick) {
+    const auto result = simulation.step(random.ticks[tick], random.changeAt(tick));
     ASSERT_TRUE(result) << result.error();
-    oracle.step(poses);
+    oracle.step(random.ticks[tick], random.changeAt(tick));
     ASSERT_TRUE(sameState(simulation.state(), oracle)) << "tick " << result->update.tick;
     ASSERT_EQ(simulation.state().ledger.error(), 0) << "tick " << result->update.tick;
-    ASSERT_EQ(result->effect.active_cells, std::int64_t(oracle.activeTiles().size()) * rules::kTileCells);
-    ASSERT_NO_FATAL_FAILURE(checkCells(world, oracle));
+    ASSERT_NO_FATAL_FAILURE(checkCounts(result->effect, oracle));
+    ASSERT_NO_FATAL_FAILURE(checkCells(oracle));
   }
   EXPECT_TRUE(recount(simulation.state()));
 }
@@ -78,7 +86,7 @@ void checkTicks(const BackendCase& backend_case, const World& world, const std::
     ASSERT_TRUE(simulation.step(poses));
     oracle.step(poses);
     ASSERT_TRUE(sameState(simulation.state(), oracle)) << "tick " << simulation.state().tick;
-    ASSERT_NO_FATAL_FAILURE(checkCells(world, oracle));
+    ASSERT_NO_FATAL_FAILURE(checkCells(oracle));
   }
 }
 
@@ -155,6 +163,50 @@ TEST_P(WholeTick, ABladeThinnerThanACellPressesWhereverItIs) {
     const int x = simulation.state().poses[0].x_q / 1000;
     for (int y = 15; y < 26; ++y)
       ASSERT_LE(heightOf(simulation.state(), x, y), -500) << "tick " << tick << ", row " << y;
+  }
+}
+
+TEST_P(WholeTick, CompactedSoilIsOnTheLedgerAndOnlyTilesThatHaveSomeHoldAPlaneOfIt) {
+  ScenePack pack = flatPack(130, 20);
+  pack.parameters.compression_q16 = kOneQ16 / 4;
+  pack.parameters.active_margin_cells = 40;
+  addBody(pack, boxMesh(3000, 3000, 3000), 60500, 10500, 400);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulateOn(GetParam());
+  ASSERT_TRUE(simulation.step(simulation.state().poses));
+  const TileStore& tiles = simulation.state().tiles;
+  ASSERT_EQ(tiles.size(), 2u) << "the margin reaches into the second tile";
+  EXPECT_EQ(tiles.find({1, 0})->compacted(), nullptr);
+  const PlaneCells* compacted = tiles.find({0, 0})->compacted();
+  ASSERT_NE(compacted, nullptr);
+  EXPECT_EQ((*compacted)[10 * 64 + 60], 100);
+  const Ledger& ledger = simulation.state().ledger;
+  EXPECT_GE(ledger.compacted, 9 * 100);
+  EXPECT_EQ(ledger.compacted % 100, 0);
+  EXPECT_EQ(ledger.ground, -ledger.compacted) << "level ground at height 0 has lost what was pressed together";
+  EXPECT_EQ(ledger.error(), 0);
+  EXPECT_TRUE(recount(simulation.state()));
+  std::vector<Pose> poses = initialState(world.id, world.base).poses;
+  std::vector<std::vector<Pose>> ticks(1, poses);
+  for (int tick = 0; tick < 6; ++tick) {
+    poses[0] = moved(poses[0], 1300, 0, tick == 2 ? 900 : -100);
+    ticks.push_back(poses);
+  }
+  checkTicks(GetParam(), world, ticks);
+}
+
+TEST_P(WholeTick, WithoutActiveAreasTheWholeWorldIsOneDomain) {
+  ScenePack pack = flatPack(140, 70);
+  pack.parameters.active_areas = 0;
+  addBody(pack, boxMesh(3000, 3000, 3000), 20500, 10500, 400);
+  addBody(pack, boxMesh(3000, 3000, 3000), 100500, 50500, 400);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulateOn(GetParam());
+  for (int tick = 0; tick < 2; ++tick) {
+    const auto result = simulation.step(simulation.state().poses);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->effect.active_cells, 3 * 2 * rules::kTileCells);
+    EXPECT_EQ(result->effect.domain_cells, 140 * 70);
   }
 }
 
