@@ -9,14 +9,14 @@ namespace spoor {
 
 namespace {
 
-constexpr std::int32_t kCell_q = 1000;
-constexpr std::int32_t kSide_cells = 64;
+constexpr std::int32_t kCell_q = 5000;
+constexpr std::int32_t kSide_cells = 56;
 constexpr std::int32_t kBoxSide_q = 22 * kCell_q;
-constexpr std::int32_t kSoilDepth_q = 20000;
-constexpr std::int32_t kPressTicks = 10;
-constexpr std::int32_t kPressDepth_q = 600;
+constexpr std::int32_t kSoilDepth_q = 50000;
+constexpr std::int32_t kPressTicks = 1;  // at once: the deeper, the more cells spread displacement uses
+constexpr std::int32_t kPressDepth_q = 4000;
 constexpr std::int32_t kMoveTicks = kPressedBoxTicks - kPressTicks;
-constexpr std::int32_t kMove_q = 3 * kCell_q;  // along both axes
+constexpr std::int32_t kMove_q = kCell_q;  // along both axes
 
 Mesh boxMesh() {
   const std::int32_t half = kBoxSide_q / 2, height = kBoxSide_q;
@@ -74,6 +74,9 @@ ScenePack pressedBoxPack(Displacement displacement, Metric metric) {
   pack.noise = {1, 1 << 20, 1, -kSoilDepth_q, -kSoilDepth_q};  // the ground lies at 0
   pack.parameters.displacement = displacement;
   pack.parameters.metric = metric;
+  // As in the thesis. Where several free cells are nearest, as along a side at 45 degrees, jump flooding takes any; the
+  // exact search takes the nearest by Euclid, which makes the metrics all but the same.
+  pack.parameters.nearest = NearestSearch::jump_flooding;
   pack.parameters.sweeps_per_tick = 0;
   pack.meshes.push_back(boxMesh());
   // Two points say where the box faces; at no speed it stays at the first.

@@ -43,7 +43,7 @@ class FigureScene {
 ScenePack pressedBoxPack(Displacement displacement, Metric metric);
 
 /// The box is pressed into the ground, then moved on a little along its own axis.
-inline constexpr std::int32_t kPressedBoxTicks = 16;
+inline constexpr std::int32_t kPressedBoxTicks = 6;
 FigureScene::PosesAt pressedBoxPoses(const ScenePack& pack);
 
 }  // namespace spoor

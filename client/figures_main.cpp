@@ -49,7 +49,7 @@ constexpr std::pair<const char*, Metric> kMetrics[] = {
     {"euclidean", Metric::euclidean}, {"manhattan", Metric::manhattan}, {"chebyshev", Metric::chebyshev}};
 // Untouched ground is pale, the bottom of the box's hole blue, the highest wall of all nine pictures all but the last
 // red.
-constexpr ColumnSettings kFigureColours{-1000, 0, 8000};
+constexpr ColumnSettings kFigureColours{-5000, 0, 40000};
 
 // From far above, dunes and tracks are mere shades: the longer their shadows, the better.
 constexpr double kLowSun_deg = 12.0;

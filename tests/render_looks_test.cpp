@@ -1,5 +1,6 @@
 // Ways to look at the ground: columns coloured by height, and marked tiles.
 #include <cmath>
+#include <set>
 
 #include "client/figure_scene.h"
 #include "shaders/render/height_colour.h"
@@ -126,6 +127,23 @@ TEST_F(Render, MarksLieOnTheirTilesAndNowhereElse) {
   renderer.highlightTiles({});
   renderer.draw(world.view(), camera);
   EXPECT_TRUE(renderer.readPicture().rgba == plain.rgba);
+}
+
+TEST(FigureScene, ABoxPressedInEachWayLeavesItsOwnContourAndAllSoil) {
+  std::set<std::uint64_t> grounds;
+  for (const Displacement way : {Displacement::iterative, Displacement::direct, Displacement::spread}) {
+    for (const Metric metric : {Metric::euclidean, Metric::manhattan, Metric::chebyshev}) {
+      FigureScene scene(pressedBoxPack(way, metric), makeNativeBackend());
+      ASSERT_TRUE(scene.runTo(kPressedBoxTicks, pressedBoxPoses(scene.pack())));
+      EXPECT_EQ(scene.state().ledger.error(), 0);
+      grounds.insert(scene.state().tiles_hash);
+      // The hole is as deep as the box went, and nothing is left in it.
+      const Tile& tile = *scene.state().tiles.find({});
+      const int middle = scene.pack().width_cells / 2;
+      EXPECT_EQ(tile.height()[std::size_t(middle * rules::kTileSize + middle)], scene.state().poses[0].z_q);
+    }
+  }
+  EXPECT_EQ(grounds.size(), 9u);
 }
 
 TEST(FigureScene, TellsTheTilesOfItsLastTick) {
