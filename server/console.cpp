@@ -37,8 +37,8 @@ void Console::serve() {
     const auto count = ::read(input_, bytes, sizeof bytes);
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count <= 0) {  // the end: what stands there without a line's end counts too
-      if (!line.empty() && !too_long) onLine(line);
-      return;
+      onLine(line, too_long);
+      return say_("console: the input has ended");
     }
     for (const char byte : std::string_view(bytes, std::size_t(count))) {
       if (byte != '\n') {
@@ -46,17 +46,16 @@ void Console::serve() {
         if (!too_long) line += byte;
         continue;
       }
-      if (too_long)
-        say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
-      else if (line.find_first_not_of(" \t\r") != std::string::npos)
-        onLine(line);
+      onLine(line, too_long);
       line.clear();
       too_long = false;
     }
   }
 }
 
-void Console::onLine(const std::string& line) {
+void Console::onLine(const std::string& line, bool too_long) {
+  if (too_long) return say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
+  if (line.find_first_not_of(" \t\r") == std::string::npos) return;
   auto values = parseAssignments(line);
   if (!values) return say_("console: " + values.error() + "; nothing changes");
   if (!queue_.push({0, std::move(*values)}))

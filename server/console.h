@@ -9,7 +9,8 @@
 namespace spoor {
 
 /// Reads lines "NAME=VALUE[,NAME=VALUE...]" from a file descriptor on a thread of its own, for as long as it lives or
-/// until the input ends, and queues them as changes. Safe on untrusted input: a bad line is said and changes nothing.
+/// until the input ends (which it says), and queues them as changes. Safe on untrusted input: a bad line is said and
+/// changes nothing.
 class Console {
  public:
   static constexpr std::size_t kLineLimit = 4096;  // bytes; a longer line is a bad one
@@ -24,7 +25,7 @@ class Console {
 
  private:
   void serve();
-  void onLine(const std::string& line);
+  void onLine(const std::string& line, bool too_long);
 
   int input_;
   int stop_[2];  // a pipe: what is written to the second end wakes the thread, to leave

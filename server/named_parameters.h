@@ -26,8 +26,8 @@ struct NamedSettings {
 
 enum class NamedKind : std::uint8_t { number, integer, choice, flag };
 
-/// A parameter as people name it: in the [thesis] table of a scene, in --set, on the console, in listings. The names,
-/// units, ranges and defaults of all of these are the list in named_parameters.cpp, in the order in which values apply.
+/// A parameter as people name it: in the [thesis] table of a scene, in --set, on the console, in listings. There is one
+/// list of them, in named_list.cpp, in the order in which values apply; its defaults are those of NamedSettings.
 struct NamedParameter {
   std::string_view name;
   NamedKind kind;

@@ -53,19 +53,21 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) con
 TickUpdate ScriptedSession::step() {
   const std::int32_t tick = state.tick + 1;
   const TileCoordinate extent = tileExtent(pack);
-  std::vector<TileChange> changes;
+  std::vector<TileChange> tiles;
   for (std::int32_t y = 0; y < extent.y; ++y) {
     for (std::int32_t x = 0; x < extent.x; ++x) {
-      if (rough_ || (x + y + tick) % 4 == 0) changes.push_back(changeTile({x, y}, tick));
+      if (rough_ || (x + y + tick) % 4 == 0) tiles.push_back(changeTile({x, y}, tick));
     }
   }
-  const Status status = applyTiles(state, base, changes);
+  const Status status = applyTiles(state, base, tiles);
   EXPECT_TRUE(status) << status.error();
   state.tick = tick;
   state.previous_poses = std::move(state.poses);
   state.poses = Script(base).poses(tick);
+  std::optional<Parameters> parameters;
+  if (const auto found = changes.find(tick); found != changes.end()) parameters = state.parameters = found->second;
   hash_at[tick] = stateHash(state);
-  return {tick, hash_at[tick], state.poses, encodeTiles(changes)};
+  return {tick, hash_at[tick], state.poses, encodeTiles(tiles), parameters};
 }
 
 std::vector<TransportEvent> Meddler::service(int wait_ms) {

@@ -37,6 +37,7 @@ class ScriptedSession {
   BaseTerrain base{pack};
   WorldState state;
   std::map<std::int32_t, std::uint64_t> hash_at;
+  std::map<std::int32_t, Parameters> changes;  // of parameters, by the first tick they are for
 
  private:
   TileChange changeTile(TileCoordinate at, std::int32_t tick) const;

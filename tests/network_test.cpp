@@ -57,6 +57,31 @@ TEST(Join, MidSessionGetsASnapshotAndTheTicksAfterIt) {
   EXPECT_EQ(late.follower->mismatchCount(), 0);
 }
 
+TEST(Join, AfterAChangeOfParametersHoldsThemToo) {
+  ScriptedSession session;
+  Parameters first = session.pack.parameters, second = first;
+  first.slopes = SlopeRule::flux;
+  first.compression_q16 = 30000;
+  second.nearest = NearestSearch::jump_flooding;
+  session.changes = {{10, first}, {70, second}};
+  Rig rig(kFar, session);
+  Player& early = rig.join("early");
+  rig.play(40);
+  Player& late = rig.join("late");
+  rig.play(20);
+  rig.runUntil([&] { return late.follower->inSync(); });
+  EXPECT_EQ(late.follower->state().parameters, first) << "from the snapshot";
+  rig.play(40);
+  const auto reports = rig.finish();
+  ASSERT_EQ(reports.size(), 2u);
+  for (const Player* player : {&early, &late}) {
+    EXPECT_EQ(player->follower->mismatchCount(), 0);
+    EXPECT_EQ(player->follower->state().parameters, second);
+    expectEqualState(*player, session);
+  }
+  EXPECT_EQ(reportOf(reports, "late").confirmed_hash, session.hash_at[100]);
+}
+
 TEST(Join, AfterTheGoodbyeIsRefused) {
   ScriptedSession session;
   Rig rig(kNear, session);
@@ -159,6 +184,45 @@ TEST(Heal, TilesThatCannotBeReadAreReplacedByASnapshot) {
 TEST(Heal, AWrongStateHashIsReplacedByASnapshot) {
   // The client's own state is right, so the server does not count it.
   healAfter([](TickUpdate& tick) { return tick.state_hash ^= 1, true; }, SnapshotCause::hash_mismatch);
+}
+
+TEST(Heal, LostParametersAreReplacedByASnapshot) {
+  ScriptedSession session;
+  session.changes[20] = session.pack.parameters;
+  session.changes[20].capacity_rounds = 1;
+  Rig rig(kNear, session);
+  Player& player = rig.join("a");
+  rig.runUntil([&] { return rig.book.clientsInSync() == 1; });
+  player.transport->change = [&](Message& message) {
+    if (auto* tick = std::get_if<TickUpdate>(&message); tick != nullptr && tick->tick == 20) tick->parameters.reset();
+    return true;
+  };
+  rig.play(40);
+  const auto reports = rig.finish();
+  EXPECT_EQ(player.follower->mismatchCount(), 1);
+  EXPECT_EQ(reports[0].mismatches, 1);
+  EXPECT_EQ(player.follower->state().parameters, session.changes[20]);
+  expectEqualState(player, session);
+}
+
+TEST(Heal, ParametersThatDoNotGoWithThePackAreReplacedByASnapshot) {
+  // Within their ranges, but this world is too large to be simulated whole.
+  ScriptedSession session(noisePack(20000, 150, 7, -20000, 20000, 50000));
+  Rig rig(kNear, session);
+  Player& player = rig.join("a");
+  rig.runUntil([&] { return rig.book.clientsInSync() == 1; });
+  player.transport->change = [&](Message& message) {
+    auto* tick = std::get_if<TickUpdate>(&message);
+    if (tick == nullptr || tick->tick != 3) return true;
+    tick->parameters = session.pack.parameters;
+    tick->parameters->active_areas = 0;
+    return true;
+  };
+  rig.play(6);
+  rig.finish();
+  EXPECT_EQ(player.follower->mismatchCount(), 1);
+  EXPECT_EQ(player.error, "");
+  expectEqualState(player, session);
 }
 
 TEST(Heal, AMissingTickIsReplacedByASnapshot) {

@@ -8,6 +8,7 @@
 #include "protocol/bulk.h"
 #include "protocol/messages.h"
 #include "protocol/zstd_codec.h"
+#include "shared/base/bytes.h"
 
 namespace spoor {
 namespace {
@@ -23,6 +24,38 @@ Bytes noise(std::size_t size, std::uint64_t seed = 1) {
 
 TickUpdate sampleTick(std::size_t tile_bytes) {
   return {77, 0x1234567890abcdefu, {{1, -2, 3, 4, 5, 6, 7}, {-8, 9, -10, 11, 12, 13, 65535}}, Bytes(tile_bytes, 9)};
+}
+
+/// No field has its default.
+Parameters sampleParameters() {
+  Parameters p;
+  p.displacement = Displacement::spread;
+  p.nearest = NearestSearch::jump_flooding_squared;
+  p.metric = Metric::chebyshev;
+  p.slopes = SlopeRule::scatter;
+  p.active_areas = 0;
+  p.displace_iterations = 11;
+  p.sweeps_per_tick = 12;
+  p.compression_q16 = 13;
+  p.compaction_limit_q16 = 14;
+  p.roughness_q16 = 15;
+  p.slope_threshold_q = kNeverSteep;
+  p.diagonal_threshold_q = 17;
+  p.obstacle_threshold_q = 18;
+  p.penetration_divider_q = 19;
+  p.spread_cells = 20;
+  p.capacity_rounds = 5;
+  p.active_margin_cells = 22;
+  p.frustum_height_q = 23;
+  return p;
+}
+
+/// A tick that changes parameters, too small to be compressed.
+TickUpdate steeredTick() {
+  TickUpdate tick = sampleTick(1);
+  tick.poses.clear();
+  tick.parameters = sampleParameters();
+  return tick;
 }
 
 std::vector<Message> samples() {
@@ -46,7 +79,7 @@ bool equal(const Message& a, const Message& b) {
         const T& second = std::get<T>(b);
         if constexpr (std::is_same_v<T, TickUpdate>) {
           return first.tick == second.tick && first.state_hash == second.state_hash && first.poses == second.poses &&
-                 first.tiles == second.tiles;
+                 first.tiles == second.tiles && first.parameters == second.parameters;
         } else {
           return first == second;
         }
@@ -126,6 +159,83 @@ TEST(Messages, ValuesOutOfRangeAreRejected) {
     const auto frame = encodeMessage(message);
     ASSERT_TRUE(frame);
     EXPECT_FALSE(decodeMessage(*frame, senderOf(message))) << toText(kindOf(message));
+  }
+}
+
+TEST(Parameters, GoRoundTripInATickUpdate) {
+  const auto frame = encodeMessage(steeredTick());
+  ASSERT_TRUE(frame);
+  const auto decoded = decodeMessage(*frame, Sender::server);
+  ASSERT_TRUE(decoded) << decoded.error();
+  EXPECT_TRUE(equal(steeredTick(), *decoded));
+  EXPECT_EQ(std::get<TickUpdate>(*decoded).parameters, sampleParameters());
+  for (std::size_t size = 0; size < frame->size(); ++size)
+    EXPECT_FALSE(decodeMessage(std::span(*frame).first(size), Sender::server)) << size;
+}
+
+TEST(Parameters, AreOfTheOrderAndSizeThatTheProtocolStates) {
+  ByteWriter writer;
+  putParameters(writer, sampleParameters());
+  const Bytes expected = {2, 5, 2,  3,  0, 11, 0,   0,   0,   12,  0,  0,  0, 13, 0,  0,  0, 14, 0,
+                          0, 0, 15, 0,  0, 0,  255, 255, 255, 127, 17, 0,  0, 0,  18, 0,  0, 0,  19,
+                          0, 0, 0,  20, 0, 0,  0,   5,   0,   0,   0,  22, 0, 0,  0,  23, 0, 0,  0};
+  EXPECT_EQ(writer.bytes, expected);
+  EXPECT_EQ(expected.size(), kParametersBytes);
+}
+
+TEST(Parameters, OutOfRangeAreRejected) {
+  void (*const spoil[])(Parameters&) = {
+      [](Parameters& p) { p.displacement = Displacement(3); },
+      [](Parameters& p) { p.nearest = NearestSearch(6); },
+      [](Parameters& p) { p.metric = Metric(3); },
+      [](Parameters& p) { p.slopes = SlopeRule(4); },
+      [](Parameters& p) { p.active_areas = 2; },
+      [](Parameters& p) { p.displace_iterations = 1001; },
+      [](Parameters& p) { p.sweeps_per_tick = -1; },
+      [](Parameters& p) { p.compression_q16 = 65537; },
+      [](Parameters& p) { p.compaction_limit_q16 = -1; },
+      [](Parameters& p) { p.roughness_q16 = 65537; },
+      [](Parameters& p) { p.slope_threshold_q = kNeverSteep - 1; },
+      [](Parameters& p) { p.diagonal_threshold_q = -1; },
+      [](Parameters& p) { p.obstacle_threshold_q = INT32_MAX; },
+      [](Parameters& p) { p.penetration_divider_q = 0; },
+      [](Parameters& p) { p.spread_cells = 65; },
+      [](Parameters& p) { p.capacity_rounds = 0; },
+      [](Parameters& p) { p.active_margin_cells = 4097; },
+      [](Parameters& p) { p.frustum_height_q = INT32_MIN; },
+  };
+  for (std::size_t i = 0; i < std::size(spoil); ++i) {
+    TickUpdate tick = steeredTick();
+    spoil[i](*tick.parameters);
+    const auto frame = encodeMessage(tick);
+    ASSERT_TRUE(frame);
+    const auto decoded = decodeMessage(*frame, Sender::server);
+    ASSERT_FALSE(decoded) << i;
+    EXPECT_TRUE(contains(decoded.error(), "parameter out of range")) << decoded.error();
+  }
+}
+
+TEST(Parameters, OfAWrongSizeAreRejected) {
+  auto frame = encodeMessage(steeredTick());
+  ASSERT_TRUE(frame);
+  auto raw = decodeFrame(*frame, Sender::server);
+  ASSERT_TRUE(raw) << raw.error();
+  ByteWriter writer;
+  putParameters(writer, sampleParameters());
+  const auto at = std::search(raw->payload.begin(), raw->payload.end(), writer.bytes.begin(), writer.bytes.end());
+  ASSERT_NE(at, raw->payload.end());
+  std::uint8_t& length = *(at - 4);  // of the vector, its lowest byte
+  ASSERT_EQ(length, kParametersBytes);
+  for (const int wrong : {0, 1, int(kParametersBytes) - 1, int(kParametersBytes) + 1, 255}) {
+    length = std::uint8_t(wrong);
+    const auto decoded = decodeMessage(
+        rawFrame(MessageKind::tick_update, 0, std::uint32_t(raw->payload.size()), raw->payload), Sender::server);
+    ASSERT_FALSE(decoded) << wrong;
+    // What reaches past the table's end is the verifier's.
+    const bool fits = wrong < int(kParametersBytes);
+    EXPECT_TRUE(contains(decoded.error(), "parameters of a wrong size") ||
+                (!fits && contains(decoded.error(), "broken table")))
+        << decoded.error();
   }
 }
 
@@ -245,6 +355,7 @@ TEST(Fuzz, ChangedMessagesAreRejectedOrValid) {
   std::mt19937_64 random(99);
   auto messages = samples();
   messages.push_back(sampleTick(8));  // too small to be compressed: the changes reach the table
+  messages.push_back(steeredTick());
   int valid = 0;
   for (const Message& message : messages) {
     const auto frame = encodeMessage(message);

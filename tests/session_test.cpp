@@ -7,7 +7,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <optional>
 
+#include "shared/base/bytes.h"
+#include "shared/base/hash.h"
+#include "shared/world/pose_bytes.h"
 #include "shared/world/script.h"
 #include "tests/scenes.h"
 
@@ -33,17 +38,20 @@ class Session : public ::testing::Test {
 
   ~Session() override { std::filesystem::remove(path_); }
 
-  /// Records a session; returns its hashes.
-  std::vector<std::uint64_t> record() {
+  /// Records a session, with parameters that change from some ticks on; returns its hashes.
+  std::vector<std::uint64_t> record(const std::map<int, Parameters>& changes = {}) {
     auto writer = SessionWriter::create(path_.string(), encodePack(world_.pack));
     EXPECT_TRUE(writer) << writer.error();
     Simulation simulation = world_.simulate();
     const Script script(world_.base);
     std::vector<std::uint64_t> hashes;
     for (int tick = 1; tick <= kTicks; ++tick) {
-      const auto result = simulation.step(script.poses(tick));
+      std::optional<Parameters> parameters;
+      if (const auto found = changes.find(tick); found != changes.end()) parameters = found->second;
+      const auto result = simulation.step(script.poses(tick), parameters);
       EXPECT_TRUE(result) << result.error();
-      (*writer)->append({tick, result->update.poses, result->update.state_hash, simulation.state().ledger});
+      (*writer)->append({tick, result->update.poses, result->update.state_hash, simulation.state().ledger,
+                         result->update.parameters});
       hashes.push_back(result->update.state_hash);
     }
     const Status status = (*writer)->close();
@@ -121,7 +129,68 @@ TEST_P(SessionReplay, OfTheFileHasTheRecordedHashesAndLedgers) {
   EXPECT_FALSE((*reader)->truncated());
 }
 
+TEST_P(SessionReplay, OfChangedParametersHasTheRecordedHashes) {
+  Parameters steep = world_.pack.parameters, tight = steep;
+  steep.slope_threshold_q = steep.diagonal_threshold_q = kNeverSteep;
+  tight.slope_threshold_q = 150;
+  tight.diagonal_threshold_q = 212;
+  tight.sweeps_per_tick = 3;
+  const auto plain = record();
+  const auto hashes = record({{1, steep}, {7, tight}});
+  EXPECT_NE(plain.front(), hashes.front()) << "parameters are part of the state";
+  EXPECT_NE(plain.back(), hashes.back());
+  auto reader = SessionReader::open(path_.string());
+  ASSERT_TRUE(reader) << reader.error();
+  const BaseTerrain base((*reader)->pack());
+  Simulation replay(base, (*reader)->id(), borrowBackend(GetParam()));
+  for (int tick = 1; tick <= kTicks; ++tick) {
+    const auto record = (*reader)->next();
+    ASSERT_TRUE(record && record->has_value());
+    EXPECT_EQ((*record)->parameters.has_value(), tick == 1 || tick == 7) << tick;
+    if (tick == 7) {
+      EXPECT_EQ((*record)->parameters, tight);
+    }
+    const auto result = replay.step((*record)->poses, (*record)->parameters);
+    ASSERT_TRUE(result) << result.error();
+    EXPECT_EQ(result->update.state_hash, hashes[std::size_t(tick - 1)]) << tick;
+  }
+  EXPECT_EQ(replay.state().parameters, tight);
+}
+
 SPOOR_ON_EVERY_BACKEND(SessionReplay);
+
+TEST_F(Session, ParametersThatCannotBeAreReported) {
+  record();
+  const Bytes whole = read();
+  const auto withParameters = [&](const Parameters& parameters, std::size_t size) {
+    ByteWriter payload;
+    payload.put(std::int32_t(1));
+    for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
+    payload.put(std::uint32_t(world_.pack.bodies.size()));
+    for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
+    ByteWriter block;
+    putParameters(block, parameters);
+    block.bytes.resize(size);
+    payload.putBytes(block.bytes);
+    ByteWriter file;
+    file.putBytes(std::span(whole).first(recordStarts(whole)[1]));
+    file.put(std::uint32_t(payload.bytes.size()));
+    file.put(std::uint8_t(2));
+    file.putBytes(payload.bytes);
+    file.put(hashBytes(payload.bytes, 2));
+    write(file.bytes);
+    return readAll();
+  };
+  Parameters good = world_.pack.parameters;
+  EXPECT_EQ(withParameters(good, kParametersBytes).error, "");
+  EXPECT_EQ(withParameters(good, kParametersBytes).ticks, 1);
+  EXPECT_EQ(withParameters(good, 0).error, "") << "none";
+  for (const std::size_t size : {std::size_t(1), kParametersBytes - 1, kParametersBytes + 1, 2 * kParametersBytes})
+    EXPECT_NE(withParameters(good, size).error.find("does not fit"), std::string::npos) << size;
+  Parameters wrong = good;
+  wrong.spread_cells = 65;
+  EXPECT_NE(withParameters(wrong, kParametersBytes).error.find("spread_cells is 65"), std::string::npos);
+}
 
 TEST_F(Session, AFileCutOffAnywhereGivesItsWholeTicks) {
   record();

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+
+#include "server/plain_number.h"
 
 namespace spoor {
 
 /// Metres to 0.1 mm units, rounded to nearest. Range: |metres| < 210 000 (asserted).
 std::int32_t toUnits(double metres);
-
-/// A number for a message, no longer than it needs: "0.05", "12.345".
-std::string plainNumber(double value);
 
 }  // namespace spoor

@@ -26,8 +26,8 @@ def expect(condition, why):
         raise Failure(why)
 
 
-def start(program, *options):
-    return subprocess.Popen([BIN / program, *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+def start(program, *options, **more):
+    return subprocess.Popen([BIN / program, *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
 
 
 def finish(process):
@@ -42,8 +42,8 @@ def run(program, *options):
 class Server:
     """A server on a port of its own choice; lines of its log as they come."""
 
-    def __init__(self, *options):
-        self.process = start("spoor-server", "--port=0", *options)
+    def __init__(self, *options, **more):
+        self.process = start("spoor-server", "--port=0", *options, **more)
         self.port = int(self.line_with(r" port (\d+)$").group(1))
 
     def line_with(self, pattern):
@@ -89,11 +89,16 @@ def clients_and_replay_end_on_the_servers_hash(scratch):
         expect(code == 0 and report["server_hash"] in out, f"replay: {out} {err}")
 
 
-def a_session_on_either_backend_verifies_on_the_other(scratch):
+def backends():
+    """The backends that this machine can run."""
     code, devices, err = run("spoor-server", "--list-devices")
     expect(code == 0 and devices.strip(), err)
-    if "OpenGL" not in devices:
-        print(f"not run: no device for gl: {devices}")
+    return ("native", "gl") if "OpenGL" in devices else ("native",)
+
+
+def a_session_on_either_backend_verifies_on_the_other(scratch):
+    if "gl" not in backends():
+        print("not run: no device for gl")
         return
     hashes = {}
     for backend in ("native", "gl"):
@@ -119,6 +124,72 @@ def a_session_on_either_backend_verifies_on_the_other(scratch):
     expect(code == 1 and "'abacus' is none of auto, gl, native" in err, f"{code} {out} {err}")
     code, out, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--port=0", "--backend=gl", "--gl-device=77")
     expect(code == 1 and "77" in err, f"{code} {out} {err}")
+
+
+# Every method and number, one after another.
+CHANGES = [
+    "4:numIterationsEvenOutSlopes=3,slopeThreshold=8,compression=0.5,compactionLimit=0.4",
+    "9:preset=thesis-ssbo,roughness=0.6",
+    "14:preset=thesis-iterative,numIterationsDisplaceMaterialToContour=5,metric=manhattan",
+    "19:preset=thesis-ssbo-multiple,penetrationDivider=300,spreadCells=5,compression=0.9",
+    "24:activeAreas=false,slopes=flux,jumpFloodingVariant=JFA+2",
+    "29:nearest=exact,metric=chebyshev,activeAreas=true,activeAreaMargin=1.5,capacityRounds=16",
+    "34:slopeThreshold=100,frustumHeight=3,obstacleThreshold=0,compression=0",
+]
+
+
+def a_session_whose_parameters_change_verifies_on_either_backend(scratch):
+    hashes = {}
+    for backend in backends():
+        server = Server(f"--scene={SOURCE}/scenes/dozer.toml", f"--backend={backend}", "--ticks=40", "--rate=0", "--wait-clients=1",
+                        f"--session={scratch}/{backend}.session", f"--json={scratch}/{backend}.json", *(f"--set={c}" for c in CHANGES))
+        client = server.join("client", f"--out={scratch}/{backend}")
+        code, out, err = finish(client)
+        expect(code == 0, f"the client failed with {code}: {err}")
+        code, table, err = finish(server.process)
+        expect(code == 0, f"the server failed with {code}: {table} {err}")
+        expect("tick 14: " in err and "displacement direct -> iterative" in err, f"changes are not said: {err}")
+        report = json.loads((scratch / f"{backend}.json").read_text())
+        expect(report["ledger"]["error"] == 0 and report["kept_back"] >= 0, str(report))
+        hashes[backend] = report["server_hash"]
+        expect(client_hash(out) == hashes[backend], "the client's hash is another")
+    expect(len(set(hashes.values())) == 1, f"{hashes}")
+    for recorded in hashes:
+        for backend in hashes:
+            code, out, err = run("spoor-replay", "verify", scratch / f"{recorded}.session", f"--backend={backend}")
+            expect(code == 0 and "verified 40 ticks" in out and hashes[backend] in out, f"{recorded} on {backend}: {out} {err}")
+    code, out, err = run("spoor-replay", "info", scratch / "native.session")
+    expect(code == 0, err)
+    expect(re.search(r"^  numIterationsEvenOutSlopes 12$", out, re.M), f"no parameters at the start: {out}")
+    expect(re.findall(r"^tick (\d+): ", out, re.M) == ["4", "9", "14", "19", "24", "29", "34"], f"not every change: {out}")
+    expect("tick 34: compression 0.9 -> 0, slopeThreshold 8 " in out and "frustumHeight 0 -> 3" in out, f"{out}")
+
+
+def who_joins_after_a_change_holds_it(scratch):
+    """Changes from the command line, then from standard input; a client from the start and one after both."""
+    session, figures = scratch / "box.session", scratch / "box.json"
+    server = Server(f"--scene={SOURCE}/scenes/box.toml", "--ticks=420", "--rate=60", "--wait-clients=1", "--console",
+                    "--set=30:compression=0.5", f"--session={session}", f"--json={figures}", stdin=subprocess.PIPE)
+    early = server.join("early", f"--out={scratch}/early")
+    server.line_with(r"tick 30: compression 0 -> 0.5")
+    server.process.stdin.write("rubbish\nterrainSize=3\nroughness=0.2,slopes=flux\n")
+    server.process.stdin.flush()
+    server.line_with(r"console: 'rubbish' is not NAME=VALUE; nothing changes")
+    server.line_with(r"console: terrainSize: cannot change in a session: it shapes the world")
+    tick = int(server.line_with(r"tick (\d+): roughness 1 -> 0.2, slopes exchange -> flux").group(1))
+    late = server.join("late", f"--out={scratch}/late")
+    hashes = []
+    for client in (early, late):
+        code, out, err = finish(client)
+        expect(code == 0, f"a client failed with {code}: {err}")
+        hashes.append(client_hash(out))
+    code, table, err = finish(server.process)
+    expect(code == 0, f"the server failed with {code}: {table} {err}")
+    expect(set(hashes) == {json.loads(figures.read_text())["server_hash"]}, f"clients {hashes}, {table}")
+    code, out, err = run("spoor-replay", "info", session)
+    expect(code == 0 and "tick 30: compression 0 -> 0.5" in out and f"tick {tick}: roughness 1 -> 0.2" in out, f"{out} {err}")
+    code, out, err = run("spoor-replay", "verify", session, "--backend=native")
+    expect(code == 0 and hashes[0] in out, f"{out} {err}")
 
 
 def replay_names_the_damaged_record(scratch):
@@ -156,6 +227,7 @@ def a_client_says_that_the_server_went_away(scratch):
 
 def bad_command_lines_exit_2(scratch):
     for program, option in (("spoor-server", "--nonsense"), ("spoor-server", "--ticks=many"), ("spoor-client", "--nonsense"),
+                            ("spoor-server", "--set=5:rubbish=1"), ("spoor-server", "--set=roughness=1"), ("spoor-server", "--set=5:terrainSize=9"),
                             ("spoor-replay", "dance"), ("spoor-bench", "--ticks=-1"), ("spoor-import", "--scene=x")):
         code, _, err = run(program, option)
         expect(code == 2 and len(err.strip().splitlines()) == 1, f"{program} {option}: {code} {err}")
@@ -177,6 +249,8 @@ def bad_scenes_name_file_key_and_reason(scratch):
 CASES = [
     clients_and_replay_end_on_the_servers_hash,
     a_session_on_either_backend_verifies_on_the_other,
+    a_session_whose_parameters_change_verifies_on_either_backend,
+    who_joins_after_a_change_holds_it,
     replay_names_the_damaged_record,
     a_client_says_in_one_line_why_it_cannot_join,
     a_client_says_that_the_server_went_away,

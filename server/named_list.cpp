@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "server/named_parameters.h"
+#include "server/plain_number.h"
+#include "shaders/rules/limits.h"
+#include "shared/base/fixed.h"
+
+namespace spoor {
+namespace {
+
+constexpr std::int32_t kLengthMost = 1 << 29;  // 0.1 mm, as validateParameters has it
+
+/// A share 0 .. 1 in 2^-16. What is above 0 stays so: 0 often means something else than very little.
+std::int32_t toQ16(double share) {
+  const auto rounded = std::int32_t(std::llround(share * kOneQ16));
+  return share > 0 ? std::max(rounded, 1) : 0;
+}
+
+std::optional<double> fromQ16(std::int32_t share) { return double(share) / kOneQ16; }
+
+double metresOf(std::int32_t units) { return double(units) / rules::kUnitsPerMetre; }
+
+/// Table 5.1 of the thesis, and what its program does where Spoor has a choice.
+Status applyPreset(double value, std::int32_t, NamedSettings& settings) {
+  constexpr Displacement displacements[] = {Displacement::iterative, Displacement::direct, Displacement::spread};
+  constexpr SlopeRule slopes[] = {SlopeRule::interleaved, SlopeRule::scatter, SlopeRule::scatter};
+  Parameters& p = settings.parameters;
+  p.displacement = displacements[int(value)];
+  p.slopes = slopes[int(value)];
+  p.nearest = NearestSearch::jump_flooding;
+  p.metric = Metric::euclidean;
+  p.compaction_limit_q16 = 0;
+  p.capacity_rounds = 1;
+  p.obstacle_threshold_q = 1000;
+  return {};
+}
+
+Status applyNearest(double value, std::int32_t, NamedSettings& settings) {
+  NearestSearch& nearest = settings.parameters.nearest;
+  if (value == 0)
+    nearest = NearestSearch::exact;
+  else if (nearest == NearestSearch::exact)  // a variant that is chosen already stays
+    nearest = NearestSearch::jump_flooding;
+  return {};
+}
+
+std::optional<double> readNearest(const NamedSettings& settings, std::int32_t) {
+  return settings.parameters.nearest == NearestSearch::exact ? 0 : 1;
+}
+
+Status applyVariant(double value, std::int32_t, NamedSettings& settings) {
+  NearestSearch& nearest = settings.parameters.nearest;
+  if (nearest == NearestSearch::exact) return Error{"goes with nearest = jump_flooding, and nearest is exact"};
+  nearest = NearestSearch(int(NearestSearch::jump_flooding) + int(value));
+  return {};
+}
+
+std::optional<double> readVariant(const NamedSettings& settings, std::int32_t) {
+  const NearestSearch nearest = settings.parameters.nearest;
+  if (nearest == NearestSearch::exact) return {};
+  return double(int(nearest) - int(NearestSearch::jump_flooding));
+}
+
+Status applySlope(double value, std::int32_t cell_q, NamedSettings& settings) {
+  settings.parameters.slope_threshold_q = slopeThreshold(value, cell_q);
+  settings.parameters.diagonal_threshold_q = diagonalThreshold(settings.parameters.slope_threshold_q);
+  return {};
+}
+
+/// In the middle of the angles that give the threshold.
+std::optional<double> readSlope(const NamedSettings& settings, std::int32_t cell_q) {
+  const std::int32_t threshold = settings.parameters.slope_threshold_q;
+  if (threshold == kNeverSteep) return std::numbers::pi / 2 / metresOf(cell_q) * (1 + 1e-12);
+  if (threshold == 0) return 0;
+  return std::atan((double(threshold) + 0.5) / rules::kUnitsPerMetre) / metresOf(cell_q);
+}
+
+Status applyMargin(double value, std::int32_t cell_q, NamedSettings& settings) {
+  // A hair is taken off so that 0.3 m, just over 3 in floats, are three cells of 0.1 m.
+  const double cells = std::ceil(value * rules::kUnitsPerMetre / cell_q - 1e-9);
+  if (cells > kActiveMarginLimit)
+    return Error{plainNumber(value) + " m are " + plainNumber(cells) + " cells, the limit is " +
+                 std::to_string(kActiveMarginLimit)};
+  settings.parameters.active_margin_cells = std::int32_t(cells);
+  return {};
+}
+
+std::optional<double> readMargin(const NamedSettings& settings, std::int32_t cell_q) {
+  return settings.parameters.active_margin_cells * metresOf(cell_q);
+}
+
+Status applyFrustum(double value, std::int32_t, NamedSettings& settings) {
+  const auto rounded = std::int32_t(std::llround(value * rules::kUnitsPerMetre));
+  settings.parameters.frustum_height_q = value > 0 ? std::max(rounded, 1) : 0;
+  return {};
+}
+
+std::optional<double> readFrustum(const NamedSettings& settings, std::int32_t) {
+  return metresOf(settings.parameters.frustum_height_q);
+}
+
+constexpr std::string_view kWorldIsFixed = "it shapes the world, which is the same for all of a session";
+constexpr std::string_view kDrawingIsFixed =
+    "it is of the terrain as clients draw it, which they read once, from the pack";
+
+// A parameter that is one field of Parameters or NamedSettings.
+#define SPOOR_FIELD(field)                                                     \
+  [](double value, std::int32_t, NamedSettings& settings) {                    \
+    settings.field = std::remove_reference_t<decltype(settings.field)>(value); \
+    return Status();                                                           \
+  },                                                                           \
+      [](const NamedSettings& settings, std::int32_t) { return std::optional<double>(double(settings.field)); }
+#define SPOOR_SHARE(field)                                  \
+  [](double value, std::int32_t, NamedSettings& settings) { \
+    settings.field = toQ16(value);                          \
+    return Status();                                        \
+  },                                                        \
+      [](const NamedSettings& settings, std::int32_t) { return fromQ16(settings.field); }
+
+// clang-format off
+/// Columns: name, kind, lowest, highest, unit, choices, fixed because, apply, read.
+std::vector<NamedParameter> makeList() {
+  using enum NamedKind;
+  constexpr double most = kLengthMost;
+  return {
+      // Short names first: what comes after overrides them.
+      {"preset", choice, 0, 2, "", {"thesis-iterative", "thesis-ssbo", "thesis-ssbo-multiple"}, "", applyPreset, nullptr},
+      {"terrainSize", number, 0.0001, 208000, "m", {}, kWorldIsFixed, SPOOR_FIELD(terrain_size_m)},
+      {"heightmapSize", integer, 1, kWorldCellsLimit, "cells", {}, kWorldIsFixed, SPOOR_FIELD(heightmap_size)},
+      {"numVerticesPerRow", integer, 0, 4096, "patches", {}, kDrawingIsFixed, SPOOR_FIELD(patches_per_row)},
+      {"numIterationsBlurNormals", integer, 0, 16, "", {}, kDrawingIsFixed, SPOOR_FIELD(normal_blur_passes)},
+      {"compression", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.compression_q16)},
+      {"roughness", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.roughness_q16)},
+      {"slopeThreshold", number, 0, 20000, "radians per metre", {}, "", applySlope, readSlope},
+      {"numIterationsDisplaceMaterialToContour", integer, 0, kIterationsLimit, "", {}, "",
+       SPOOR_FIELD(parameters.displace_iterations)},
+      {"numIterationsEvenOutSlopes", integer, 0, kIterationsLimit, "", {}, "", SPOOR_FIELD(parameters.sweeps_per_tick)},
+      {"penetrationDivider", integer, 1, most, "units of 0.1 mm", {}, "", SPOOR_FIELD(parameters.penetration_divider_q)},
+      {"obstacleThreshold", integer, 0, most, "units of 0.1 mm", {}, "", SPOOR_FIELD(parameters.obstacle_threshold_q)},
+      {"frustumHeight", number, 0, 53000, "m", {}, "", applyFrustum, readFrustum},
+      {"activeAreas", flag, 0, 1, "", {}, "", SPOOR_FIELD(parameters.active_areas)},
+      {"activeAreaMargin", number, 0, 400000, "m", {}, "", applyMargin, readMargin},
+      {"displacement", choice, 0, 2, "", {"direct", "iterative", "spread"}, "", SPOOR_FIELD(parameters.displacement)},
+      {"nearest", choice, 0, 1, "", {"exact", "jump_flooding"}, "", applyNearest, readNearest},
+      {"jumpFloodingVariant", choice, 0, 4, "", {"JFA", "JFA+1", "JFA+2", "1+JFA", "JFA^2"}, "", applyVariant, readVariant},
+      {"metric", choice, 0, 2, "", {"euclidean", "manhattan", "chebyshev"}, "", SPOOR_FIELD(parameters.metric)},
+      {"slopes", choice, 0, 3, "", {"exchange", "flux", "interleaved", "scatter"}, "", SPOOR_FIELD(parameters.slopes)},
+      {"compactionLimit", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.compaction_limit_q16)},
+      {"spreadCells", integer, 1, kSpreadCellsLimit, "cells", {}, "", SPOOR_FIELD(parameters.spread_cells)},
+      {"capacityRounds", integer, 1, kCapacityRoundsLimit, "", {}, "", SPOOR_FIELD(parameters.capacity_rounds)},
+  };
+}
+// clang-format on
+
+#undef SPOOR_FIELD
+#undef SPOOR_SHARE
+
+}  // namespace
+
+std::span<const NamedParameter> namedParameters() {
+  static const std::vector<NamedParameter> list = makeList();
+  return list;
+}
+
+std::int32_t slopeThreshold(double per_metre, std::int32_t cell_q) {
+  using Extended = long double;
+  constexpr Extended units = rules::kUnitsPerMetre;
+  const Extended angle = Extended(per_metre) * cell_q / units;
+  if (angle >= std::numbers::pi_v<Extended> / 2) return kNeverSteep;
+  const Extended candidate = std::floor(std::tan(angle) * units);
+  if (!(candidate < Extended(kLengthMost))) return kNeverSteep;
+  const Extended steepest = angle * (1 + 4 * Extended(std::numeric_limits<double>::epsilon()));
+  const auto rests = [&](std::int32_t difference_q) { return std::atan(difference_q / units) <= steepest; };
+  auto threshold = std::int32_t(candidate);
+  while (threshold > 0 && !rests(threshold)) --threshold;
+  while (threshold < kLengthMost && rests(threshold + 1)) ++threshold;
+  return threshold;
+}
+
+std::int32_t diagonalThreshold(std::int32_t slope_threshold_q) {
+  if (slope_threshold_q == kNeverSteep) return kNeverSteep;
+  const std::uint32_t diagonal = isqrt(2 * std::uint64_t(slope_threshold_q) * std::uint64_t(slope_threshold_q));
+  return diagonal > std::uint32_t(kLengthMost) ? kNeverSteep : std::int32_t(diagonal);
+}
+
+}  // namespace spoor
