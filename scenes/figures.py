@@ -24,9 +24,9 @@ FIGURES = [
     ("5.13", "figure_5.13_roughness_0.8", "thesis_5_13_right", ["--look=trails"]),
     ("5.14", "figure_5.14_slope_threshold_0.1", "thesis_5_14_left", ["--look=trails"]),
     ("5.14", "figure_5.14_slope_threshold_4.9", "thesis_5_14_right", ["--look=trails"]),
-    ("5.15", "figure_5.15_left_snow", "thesis_5_15_left", ["--look=trails"]),
-    ("5.15", "figure_5.15_middle_snow", "thesis_5_15_middle", ["--look=trails"]),
-    ("5.15", "figure_5.15_right_mud", "thesis_5_15_right", ["--look=trails", "--ground=mud"]),
+    ("5.15", "figure_5.15_left_firm_snow", "thesis_5_15_left", ["--look=trails"]),
+    ("5.15", "figure_5.15_middle_firm_snow", "thesis_5_15_middle", ["--look=trails"]),
+    ("5.15", "figure_5.15_right_loose_snow", "thesis_5_15_right", ["--look=trails"]),
 ]
 WITHOUT_PACK = ["5.1", "5.2", "5.3"]
 
