@@ -229,7 +229,7 @@ Camera overviewView(const TerrainView& view, double aspect) {
   const double size_m = std::max(world_m.y, world_m.x * 1.6 / aspect);
   constexpr double kView_deg = 34.0;
   const glm::dvec3 eye_m(middle_m + glm::dvec2(0.0, -0.98 * size_m), ground_m + 1.15 * size_m);
-  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.02 * size_m), ground_m});
+  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.06 * size_m), ground_m});
   camera.field_of_view_deg = kView_deg;
   camera.focus_m = middle_m;
   return camera;
