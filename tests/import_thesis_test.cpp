@@ -7,6 +7,7 @@
 
 #include "server/import/importer.h"
 #include "server/named_parameters.h"
+#include "shared/base/bytes.h"
 #include "shared/world/base_terrain.h"
 #include "tests/import_fixture.h"
 
@@ -120,6 +121,26 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
     ASSERT_TRUE(again) << again.error();
     EXPECT_EQ(again->parameters, expected.parameters) << given.line;
     EXPECT_TRUE(scene->notes.empty()) << scene->notes.front();
+  }
+}
+
+TEST_F(Thesis, APackWithParametersOutOfRangeIsRefused) {
+  const auto scene = importScene(write("scene.toml", thesisScene("")));
+  ASSERT_TRUE(scene) << scene.error();
+  const std::vector<std::uint8_t> bytes = encodePack(scene->pack);
+  ByteWriter block;
+  putParameters(block, scene->pack.parameters);
+  const auto at = std::search(bytes.begin(), bytes.end(), block.bytes.begin(), block.bytes.end()) - bytes.begin();
+  ASSERT_LT(std::size_t(at), bytes.size());
+  const char* const names[] = {"displacement", "nearest", "metric", "slopes", "active_areas"};
+  for (std::size_t i = 0; i < kParametersBytes; ++i) {
+    if (i >= 5 && (i - 5) % 4 != 3) continue;  // the highest byte of each number: negative, or too large
+    std::vector<std::uint8_t> wrong = bytes;
+    wrong[std::size_t(at) + i] = 0xff;
+    const auto refused = decodePack(wrong);
+    ASSERT_FALSE(refused) << i;
+    EXPECT_TRUE(contains(refused.error(), "pack: parameters: " + std::string(i < 5 ? names[i] : "")))
+        << refused.error();
   }
 }
 

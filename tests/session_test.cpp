@@ -192,6 +192,36 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
   EXPECT_NE(withParameters(wrong, kParametersBytes).error.find("spread_cells is 65"), std::string::npos);
 }
 
+TEST_F(Session, ASnapshotHoldsTheParametersOfItsTick) {
+  Simulation simulation = world_.simulate();
+  const Script script(world_.base);
+  Parameters changed = world_.pack.parameters;
+  changed.capacity_rounds = 9;
+  changed.slope_threshold_q = kNeverSteep;
+  ASSERT_TRUE(simulation.step(script.poses(1), changed));
+  ASSERT_TRUE(simulation.step(script.poses(2)));
+  const Bytes bytes = encodeSnapshot(simulation.state(), world_.base);
+  const auto state = decodeSnapshot(bytes, world_.id, world_.base);
+  ASSERT_TRUE(state) << state.error();
+  EXPECT_EQ(state->parameters, changed);
+  EXPECT_EQ(stateHash(*state), stateHash(simulation.state()));
+  ByteWriter block;
+  putParameters(block, changed);
+  constexpr std::size_t at = 4 + 8;  // after tick and hash
+  ASSERT_TRUE(std::equal(block.bytes.begin(), block.bytes.end(), bytes.begin() + at));
+  for (std::size_t i = 0; i < kParametersBytes; ++i) {
+    Bytes wrong = bytes;
+    wrong[at + i] ^= 0x80;  // out of range, or else of another state
+    const auto refused = decodeSnapshot(wrong, world_.id, world_.base);
+    ASSERT_FALSE(refused) << i;
+    const bool is_named = refused.error().find("snapshot: parameters: ") == 0;
+    EXPECT_TRUE(is_named || refused.error().find("snapshot: state hash ") == 0) << refused.error();
+    if (i < 5) {
+      EXPECT_TRUE(is_named) << i << ": " << refused.error();
+    }
+  }
+}
+
 TEST_F(Session, AFileCutOffAnywhereGivesItsWholeTicks) {
   record();
   const Bytes bytes = read();

@@ -9,6 +9,8 @@
 
 namespace spoor {
 
+inline constexpr double kDefaultReposeDeg = 35;
+
 /// Fills the slope thresholds of a pack from its cell size and the angle of repose. Adds a note where a cell is so
 /// small that a threshold had to be rounded up to 1.
 /// @param repose_deg  0 .. 89

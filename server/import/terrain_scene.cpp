@@ -11,6 +11,7 @@
 #include "server/import/pack_maker.h"
 #include "server/import/path_maker.h"
 #include "server/import/units.h"
+#include "server/named_parameters.h"
 #include "shaders/rules/limits.h"
 
 namespace spoor {
@@ -21,7 +22,6 @@ constexpr double kPathShare = 0.6;  // of the world's width, where it is small
 constexpr double kSpeedMS = 5;
 constexpr double kSinkageM = 0.1;
 constexpr double kSoilDepthM = 1;
-constexpr double kReposeDeg = 35;
 constexpr double kGapM = 0.5;  // between bodies side by side
 
 /// An S from west to east about the middle of the world: one period of a sine, a tenth as high as it is long.
@@ -84,8 +84,8 @@ Result<ImportedScene> importTerrain(const TerrainRequest& request) {
   pack.default_ticks = std::int32_t(request.ticks);
   pack.cell_q = toUnits(request.cell_m);
   pack.soil_depth_q = toUnits(kSoilDepthM);
-  pack.parameters.obstacle_threshold_q = 10;
-  setReposeAngle(pack, kReposeDeg, scene.notes);
+  pack.parameters = NamedSettings().parameters;
+  setReposeAngle(pack, kDefaultReposeDeg, scene.notes);
 
   DemRequest dem_request;
   dem_request.file = request.terrain;

@@ -65,7 +65,7 @@ void readSoil(TableReader& soil, TableReader& thesis, const std::vector<NamedVal
   NamedSettings settings;
   apply(preset, pack.cell_q, thesis, settings, notes);
   pack.parameters = settings.parameters;
-  const double repose_deg = soil.number("repose_deg", {0, 89, "degrees"}, 35);
+  const double repose_deg = soil.number("repose_deg", {0, 89, "degrees"}, kDefaultReposeDeg);
   if (!thesis.has("slopeThreshold")) setReposeAngle(pack, repose_deg, notes);
   const double obstacle_m = soil.number("obstacle_threshold_m", {0, 100, "m"}, 0);
   if (soil.has("obstacle_threshold_m")) pack.parameters.obstacle_threshold_q = toUnits(obstacle_m);

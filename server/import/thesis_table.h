@@ -19,7 +19,7 @@ Range namedRange(std::string_view name);
 void refuseBoth(TableReader& thesis, std::string_view key, const TableReader& other, std::string_view other_key);
 
 /// Compiles a scene's [soil] and [thesis] to its pack, whose cell size is set. A preset comes first, the keys beside it
-/// override it. Slopes rest up to 35 degrees where neither table says anything.
+/// override it. Slopes rest up to kDefaultReposeDeg where neither table says anything.
 void readSoil(TableReader& soil, TableReader& thesis, const std::vector<NamedValue>& named, ScenePack& pack,
               std::vector<std::string>& notes);
 
