@@ -32,6 +32,7 @@ struct Arguments {
   bool everything_active = false;
   bool no_bodies = false;
   std::int64_t range_mm = 0;
+  double sun_deg = RenderSettings().sun_elevation_deg;
   BackendChoice backend;
   PictureArguments picture;
 };
@@ -50,9 +51,6 @@ constexpr std::pair<const char*, Metric> kMetrics[] = {
 // Untouched ground is pale, the bottom of the box's hole blue, the highest wall of all nine pictures all but the last
 // red.
 constexpr ColumnSettings kFigureColours{-5000, 0, 40000};
-
-// From far above, dunes and tracks are mere shades: the longer their shadows, the better.
-constexpr double kLowSun_deg = 12.0;
 
 constexpr std::array<std::string_view, 5> kLooks{"trails", "follow", "above", "overview", "columns"};
 
@@ -123,7 +121,7 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
   if (const Status run = scene.runTo(tick); !run) return Error{arguments.pack + ": " + run.error()};
 
   if (arguments.look == "columns") settings.shade = Shade::columns;
-  if (arguments.look == "overview") settings.sun_elevation_deg = kLowSun_deg;
+  settings.sun_elevation_deg = arguments.sun_deg;
   settings.columns = {-std::int32_t(arguments.range_mm) * 10, 0, std::int32_t(arguments.range_mm) * 10};
   settings.bodies = !arguments.no_bodies;
   Renderer renderer(scene.pack(), settings);
@@ -165,6 +163,8 @@ int run(int argc, char** argv) {
   options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
   options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
               &arguments.range_mm, 0, 100000);
+  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show", &arguments.sun_deg, 1.0,
+              89.0);
   options.addFlag("highlight", "mark the tiles that the last tick simulated", &arguments.highlight);
   options.addFlag("all-active", "simulate all of the terrain in every tick", &arguments.everything_active);
   options.addFlag("no-bodies", "leave the bodies out of the picture", &arguments.no_bodies);

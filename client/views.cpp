@@ -76,6 +76,12 @@ std::optional<glm::dvec2> crossing(const std::array<glm::dvec2, 2>& a, const std
   return a[0] + on_a * along_a;
 }
 
+glm::dvec2 nearestOn(const std::array<glm::dvec2, 2>& segment, const glm::dvec2& place_m) {
+  const glm::dvec2 along = segment[1] - segment[0];
+  const double length_squared = std::max(glm::dot(along, along), 1e-12);
+  return segment[0] + along * glm::clamp(glm::dot(place_m - segment[0], along) / length_squared, 0.0, 1.0);
+}
+
 const Tile* tileAt(const TerrainView& view, const glm::dvec2& place_m) {
   const glm::dvec2 tile = glm::floor(place_m * kUnits / double(view.base->pack().cell_q * rules::kTileSize));
   return view.state->tiles.find({std::int32_t(tile.x), std::int32_t(tile.y)});
@@ -97,6 +103,10 @@ glm::dvec2 tracksMiddle(const TerrainView& view) {
       for (const auto& a : segmentsOf(paths[first]))
         for (const auto& b : segmentsOf(paths[second]))
           if (const auto place_m = crossing(a, b); place_m && tileAt(view, *place_m) != nullptr) consider(*place_m);
+  if (best_away < std::numeric_limits<double>::max()) return best_m;
+  for (const Path& path : paths)
+    for (const auto& segment : segmentsOf(path))
+      if (const glm::dvec2 place_m = nearestOn(segment, middle_m); tileAt(view, place_m) != nullptr) consider(place_m);
   if (best_away < std::numeric_limits<double>::max()) return best_m;
   const double tile_m = rules::kTileSize * view.base->pack().cell_q / kUnits;
   for (const Tile* tile : view.state->tiles.sorted()) consider((glm::dvec2(tile->at.x, tile->at.y) + 0.5) * tile_m);

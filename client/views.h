@@ -15,7 +15,7 @@ namespace spoor {
 Camera followView(const TerrainView& view, int body_index);
 
 /// A three-quarter view of the tracks where two paths cross (the crossing nearest to the middle of the live tiles), lit
-/// from the side; where none do, of the live tile nearest to the middle.
+/// from the side; where none do, of the live place on a path, or else the live tile, nearest to the middle.
 Camera trailsView(const TerrainView& view, double sun_azimuth_deg);
 
 /// Straight down on all live tiles, north up, orthographic.
