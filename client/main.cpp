@@ -9,6 +9,7 @@
 
 #include "client/gl_window.h"
 #include "client/headless_run.h"
+#include "client/picture_options.h"
 #include "client/session.h"
 #include "client/window_run.h"
 #include "shared/base/json.h"
@@ -18,54 +19,42 @@ namespace spoor {
 
 namespace {
 
-constexpr int kSideLimit_px = 16384;
-
 struct Arguments {
   std::string connect;
   bool headless = false;
   std::int64_t frame_count = 0;
-  std::string size = "1280x720";
   std::string folder = ".";
   std::string name = "viewer";
-  std::string ground = "snow";
+  std::string shade = "lit";
+  PictureArguments picture;
 };
 
-std::optional<int> numberIn(std::string_view text, int lowest, int highest) {
+std::optional<std::uint16_t> portIn(std::string_view text) {
   int value = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size() || value < lowest || value > highest)
-    return std::nullopt;
-  return value;
+  if (problem != std::errc() || end != text.data() + text.size() || value < 1 || value > 65535) return std::nullopt;
+  return std::uint16_t(value);
 }
 
 Result<ConnectOptions> connectOptions(const Arguments& arguments) {
   const auto colon = arguments.connect.rfind(':');
-  const auto port = colon == std::string::npos
-                        ? std::nullopt
-                        : numberIn(std::string_view(arguments.connect).substr(colon + 1), 1, 65535);
+  const auto port =
+      colon == std::string::npos ? std::nullopt : portIn(std::string_view(arguments.connect).substr(colon + 1));
   if (!port || colon == 0)
     return Error{fmt::format("--connect \"{}\": want HOST:PORT with a port of 1 .. 65535", arguments.connect)};
   ConnectOptions options;
   options.host = arguments.connect.substr(0, colon);
-  options.port = std::uint16_t(*port);
+  options.port = *port;
   options.name = arguments.name;
   return options;
 }
 
 Result<RenderSettings> renderSettings(const Arguments& arguments) {
-  RenderSettings settings;
-  const std::string_view size = arguments.size;
-  const auto cross = size.find('x');
-  const auto width = cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(0, cross), 1, kSideLimit_px);
-  const auto height =
-      cross == std::string_view::npos ? std::nullopt : numberIn(size.substr(cross + 1), 1, kSideLimit_px);
-  if (!width || !height)
-    return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
-  settings.width_px = *width;
-  settings.height_px = *height;
-  if (arguments.ground != "snow" && arguments.ground != "sand")
-    return Error{fmt::format("--ground \"{}\": want snow or sand", arguments.ground)};
-  settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::snow;
+  auto settings = pictureSettings(arguments.picture);
+  if (!settings) return settings;
+  if (arguments.shade != "lit" && arguments.shade != "normals" && arguments.shade != "columns")
+    return Error{fmt::format("--shade \"{}\": want lit, normals or columns", arguments.shade)};
+  if (arguments.shade != "lit") settings->shade = arguments.shade == "columns" ? Shade::columns : Shade::normals;
   return settings;
 }
 
@@ -106,10 +95,11 @@ int run(int argc, char** argv) {
   options.addFlag("headless", "no window: follow to the end, then write pictures", &arguments.headless);
   options.add("frames", "count", "pictures spread over the session, with --headless", &arguments.frame_count, 0,
               100000);
-  options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
   options.add("out", "DIR", "where pictures go", &arguments.folder);
   options.add("name", "NAME", "what the server calls this client", &arguments.name);
-  options.add("ground", "snow|sand", "what the ground looks like", &arguments.ground);
+  addPictureOptions(options, arguments.picture);
+  options.add("shade", "lit|normals|columns", "columns: cells round the focus as bars, coloured by height",
+              &arguments.shade);
   options.parseOrExit(argc, argv);
 
   const auto connect = connectOptions(arguments);

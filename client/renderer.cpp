@@ -19,14 +19,30 @@ namespace {
 constexpr double kHaze_m = 3000.0;  // how far one sees on a clear day, to 1/e
 constexpr double kFogShare = 0.75;  // of the outermost window's reach: what lies there is all but hidden
 
-// Patches in one draw call. llvmpipe (Mesa 22.3) loses triangles of calls that make more than 65 536 vertices, and
-// slows down long before; a patch makes up to 4225.
-constexpr std::size_t kDrawPatches = 8;
+// Vertices that the patches of one draw call may make. llvmpipe (Mesa 22.3) loses triangles of calls that make more
+// than 65 536, and slows down long before; a patch of 64 samples makes up to 4225.
+constexpr int kDrawVertices = 8 * 65 * 65;
 
 glm::dvec3 sunOf(const RenderSettings& settings) {
   const double azimuth = glm::radians(settings.sun_azimuth_deg);
   const double elevation = glm::radians(settings.sun_elevation_deg);
   return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)};
+}
+
+int groundCode(Ground ground) {
+  if (ground == Ground::sand) return render::kGroundSand;
+  return ground == Ground::mud ? render::kGroundMud : render::kGroundSnow;
+}
+
+int shadeCode(Shade shade) {
+  if (shade == Shade::columns) return render::kShadeColumns;
+  return shade == Shade::normals ? render::kShadeNormals : render::kShadeLit;
+}
+
+TerrainSettings terrainSettings(const ScenePack& pack, const RenderSettings& settings) {
+  const int patches_per_row = settings.patches_per_row < 0 ? pack.patches_per_row : settings.patches_per_row;
+  return {settings.fine_pages, settings.coarse_pages, finePatchSamples(pack.width_cells, patches_per_row),
+          settings.blur_passes < 0 ? pack.normal_blur_passes : settings.blur_passes};
 }
 
 }  // namespace
@@ -36,8 +52,9 @@ Renderer::Renderer(const ScenePack& pack, const RenderSettings& settings)
       settings_(settings),
       cell_m_(double(pack.cell_q) / rules::kUnitsPerMetre),
       sun_(sunOf(settings)),
-      terrain_(settings.fine_pages, settings.coarse_pages, cell_m_, sun_),
-      bodies_(pack) {
+      terrain_(terrainSettings(pack, settings), cell_m_, sun_),
+      bodies_(pack),
+      columns_(settings.columns) {
   frame_block_ = makeBuffer();
   glNamedBufferStorage(frame_block_.name(), sizeof(render::Frame), nullptr, GL_DYNAMIC_STORAGE_BIT);
   patch_buffer_ = makeBuffer();
@@ -102,11 +119,11 @@ void Renderer::tilesChanged(std::span<const TileCoordinate> tiles) {
   changed_.insert(changed_.end(), tiles.begin(), tiles.end());
 }
 
-void Renderer::fillFrame(const TerrainView& view, const Camera& camera, const CameraFrame& frame) {
+void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, const CameraFrame& frame) {
   float shadow_texel_m = 0.0f;
   render::Frame block{};
   block.clip_from_rel = frame.clip_from_rel;
-  block.shadow_from_rel = bodies_.shadowMatrix(view.state->poses, frame, camera, sun_, shadow_texel_m);
+  block.shadow_from_rel = bodies_.shadowMatrix(poses, frame, camera, sun_, shadow_texel_m);
   block.eye = {frame.eye_rel, frame.orthographic ? 1.0f : 0.0f};
   block.ray_right = {frame.ray_right, 0.0f};
   block.ray_up = {frame.ray_up, 0.0f};
@@ -115,11 +132,10 @@ void Renderer::fillFrame(const TerrainView& view, const Camera& camera, const Ca
   const double fog_reach_m = kFogShare * terrain_.reachCells() * cell_m_;
   block.scale = {float(cell_m_), frame.pixels_per_radian, float(settings_.triangle_px),
                  float(std::max(2.6 / fog_reach_m, 1.0 / kHaze_m))};
-  block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count), 0.0f};
-  block.origin = {frame.origin_cell, frame.origin_height_q, 0};
-  block.world = {pack_->width_cells, pack_->height_cells,
-                 settings_.ground == Ground::sand ? render::kGroundSand : render::kGroundSnow,
-                 settings_.shade == Shade::normals ? render::kShadeNormals : render::kShadeLit};
+  block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count),
+                highlight_.empty() ? 0.0f : 1.0f};
+  block.origin = {frame.origin_cell, frame.origin_height_q, terrain_.settings().fine_patch_samples};
+  block.world = {pack_->width_cells, pack_->height_cells, groundCode(settings_.ground), shadeCode(settings_.shade)};
   const auto windows = terrain_.windows();
   std::copy(windows.begin(), windows.end(), block.levels);
   glNamedBufferSubData(frame_block_.name(), 0, sizeof block, &block);
@@ -132,12 +148,17 @@ void Renderer::draw(const TerrainView& view, const Camera& camera) {
   std::ranges::sort(changed_);
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   const glm::ivec2 focus(glm::floor(camera.focus_m / cell_m_));
-  terrain_.update(view, focus, changed_);
-  changed_.clear();
+  const bool as_columns = settings_.shade == Shade::columns;
+  if (!as_columns) {
+    terrain_.update(view, focus, changed_);
+    changed_.clear();
+  }
 
   const CameraFrame frame = frameOf(camera, cell_m_, settings_.width_px, settings_.height_px);
-  fillFrame(view, camera, frame);
-  bodies_.drawShadows(view.state->poses, frame);
+  const std::span<const Pose> poses = settings_.bodies ? std::span(view.state->poses) : std::span<const Pose>();
+  highlight_.update(frame);
+  fillFrame(poses, camera, frame);
+  bodies_.drawShadows(poses, frame);
 
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, settings_.width_px, settings_.height_px);
@@ -147,8 +168,11 @@ void Renderer::draw(const TerrainView& view, const Camera& camera) {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GEQUAL);
 
-  bodies_.draw(view.state->poses, frame);
-  drawTerrain(frame);
+  bodies_.draw(poses, frame);
+  if (as_columns)
+    columns_.draw(view, focus, frame);
+  else
+    drawTerrain(frame);
   composePicture();
   checkGl("drawing");
 }
@@ -162,8 +186,13 @@ void Renderer::drawTerrain(const CameraFrame& frame) {
   glBindVertexArray(patch_layout_.name());
   glPatchParameteri(GL_PATCH_VERTICES, 1);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  for (std::size_t first = 0; first < patches_.size(); first += kDrawPatches)
-    glDrawArrays(GL_PATCHES, GLint(first), GLsizei(std::min(kDrawPatches, patches_.size() - first)));
+  for (std::size_t first = 0, count = 0; first < patches_.size(); first += count) {
+    // The finest level's come first; a call may run on into the others.
+    const int fine_side = patches_[first].z == 0 ? terrain_.settings().fine_patch_samples : 0;
+    const int side = std::max(fine_side, render::kCoarsePatchSamples) + 1;
+    count = std::min(std::size_t(kDrawVertices / (side * side)), patches_.size() - first);
+    glDrawArrays(GL_PATCHES, GLint(first), GLsizei(count));
+  }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 

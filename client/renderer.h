@@ -6,13 +6,16 @@
 
 #include "client/body_renderer.h"
 #include "client/camera.h"
+#include "client/column_renderer.h"
+#include "client/highlight.h"
 #include "client/png_file.h"
 #include "client/terrain_levels.h"
 
 namespace spoor {
 
-enum class Ground { snow, sand };
-enum class Shade { lit, normals };
+enum class Ground { snow, sand, mud };
+/// columns: every cell round the focus as a vertical bar, coloured by its height, and nothing else of the ground.
+enum class Shade { lit, normals, columns };
 
 struct RenderSettings {
   int width_px = 1280;
@@ -22,10 +25,14 @@ struct RenderSettings {
   int coarse_pages = 12;           // pages of 64 samples along a side of each coarser one; see TerrainLevels
   double sun_azimuth_deg = 135.0;  // from east towards north: north-west, as in hill-shaded maps
   double sun_elevation_deg = 21.0;
+  int blur_passes = -1;      // of the ground's normals, 0 .. 16; -1: as the pack says
+  int patches_per_row = -1;  // of the ground's mesh, 0 .. 4096, see finePatchSamples; -1: as the pack says
   double triangle_px = 8.0;  // wanted side of a triangle on the screen
   double detail = 1.0;       // strength of the grain finer than a cell, 0 .. 1
   Ground ground = Ground::snow;
   Shade shade = Shade::lit;
+  ColumnSettings columns;
+  bool bodies = true;  // whether they are drawn
 };
 
 /// Draws a world: ground, bodies, sky. Needs a current GL 4.5 context for its whole life. Throws std::runtime_error
@@ -37,6 +44,9 @@ class Renderer {
 
   /// Tells which tiles differ from the last picture's.
   void tilesChanged(std::span<const TileCoordinate> tiles);
+
+  /// Tiles to mark on the ground from now on, and no others; columns show no marks.
+  void highlightTiles(std::span<const TileCoordinate> tiles) { highlight_.set(tiles); }
 
   /// Draws into the renderer's own target. The same view and camera give the same picture, whatever was drawn before.
   void draw(const TerrainView& view, const Camera& camera);
@@ -59,7 +69,7 @@ class Renderer {
   void makeTargets();
   void drawTerrain(const CameraFrame& frame);
   void composePicture();
-  void fillFrame(const TerrainView& view, const Camera& camera, const CameraFrame& frame);
+  void fillFrame(std::span<const Pose> poses, const Camera& camera, const CameraFrame& frame);
 
   const ScenePack* pack_;
   RenderSettings settings_;
@@ -67,6 +77,8 @@ class Renderer {
   glm::dvec3 sun_;
   TerrainLevels terrain_;
   BodyRenderer bodies_;
+  ColumnRenderer columns_;
+  Highlight highlight_;
   std::vector<TileCoordinate> changed_;
   std::vector<Patch> patches_;
   GlBuffer frame_block_, patch_buffer_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <thread>
 
@@ -15,6 +16,8 @@ using namespace render;
 namespace {
 
 constexpr std::size_t kPageCells = std::size_t(kPageSamples) * kPageSamples;
+// An edge on the window's border is cut into a quarter of its samples, as the next level has vertices there.
+constexpr int kFinePatchLowest = 1 << kLevelShift;
 constexpr std::size_t kBatchPages = 256;  // filled side by side before they are uploaded
 
 int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -64,9 +67,20 @@ bool TerrainLevels::windowsNest(int fine_pages, int coarse_pages) {
   return std::max(furthest(fine_pages), furthest(coarse_pages)) <= pure << kLevelShift;
 }
 
-TerrainLevels::TerrainLevels(int fine_pages, int coarse_pages, double cell_m, const glm::dvec3& sun)
-    : coarse_pages_(coarse_pages), cell_m_(cell_m), sun_(sun) {
+int finePatchSamples(std::int32_t width_cells, std::int32_t patches_per_row) {
+  SPOOR_ASSERT(width_cells > 0 && patches_per_row >= 0);
+  int side = kFinePatchSamples;
+  while (side > kFinePatchLowest && std::int64_t(side) * patches_per_row > width_cells) side /= 2;
+  return side;
+}
+
+TerrainLevels::TerrainLevels(const TerrainSettings& settings, double cell_m, const glm::dvec3& sun)
+    : settings_(settings), cell_m_(cell_m), sun_(sun) {
+  const int fine_pages = settings.fine_pages, coarse_pages = settings.coarse_pages;
   SPOOR_ASSERT(windowsNest(fine_pages, coarse_pages) && sun.z > 0.0);
+  SPOOR_ASSERT(settings.blur_passes >= 0 && settings.blur_passes <= kBlurPassesLimit);
+  SPOOR_ASSERT(std::has_single_bit(unsigned(settings.fine_patch_samples)) &&
+               settings.fine_patch_samples >= kFinePatchLowest && settings.fine_patch_samples <= kFinePatchSamples);
   for (int level = 0; level < kLevelCount; ++level) {
     Level& l = levels_[std::size_t(level)];
     l.page_count = level == 0 ? fine_pages : coarse_pages;
@@ -81,6 +95,9 @@ TerrainLevels::TerrainLevels(int fine_pages, int coarse_pages, double cell_m, co
   relief_job_ = makeBuffer();
   glNamedBufferStorage(relief_job_.name(), sizeof(ReliefJob), nullptr, GL_DYNAMIC_STORAGE_BIT);
   relief_program_ = makeProgram({"render/relief.comp"});
+  if (settings.blur_passes > 0) blur_program_ = makeProgram({"render/blur_slopes.comp"});
+  if (settings.blur_passes > 1)
+    for (GlTexture& slopes : blur_slopes_) slopes = makeLayers(GL_RG32F, fine_side, 1, GL_NEAREST);
 }
 
 void TerrainLevels::forget() {
@@ -199,46 +216,6 @@ void TerrainLevels::uploadBox(int level, const SampleBox& box, const std::int32_
   stats.samples_uploaded += std::int64_t(box.count.x) * box.count.y;
 }
 
-void TerrainLevels::makeRelief(int level) {
-  Level& l = levels_[std::size_t(level)];
-  if (l.dirty.empty()) return;
-  const int side = l.page_count * kPageSamples;
-  // What a changed sample can darken: its neighbourhood, and whatever marches through it towards the sun.
-  const glm::dvec2 towards = glm::dvec2(sun_) / std::max(std::abs(sun_.x), std::abs(sun_.y));
-  const glm::ivec2 march = glm::ivec2(glm::round(towards * double(kShadowSteps)));
-  const glm::ivec2 before = kOcclusionReach + glm::max(march, glm::ivec2(0)) + 1;
-  const glm::ivec2 behind = kOcclusionReach + glm::max(-march, glm::ivec2(0)) + 1;
-  std::int64_t area = 0;
-  for (SampleBox& box : l.dirty) {
-    const glm::ivec2 first = glm::max(box.first - before, glm::ivec2(0));
-    const glm::ivec2 end = glm::min(box.first + box.count + behind, glm::ivec2(side));
-    box = {first, glm::max(end - first, glm::ivec2(0))};
-    area += std::int64_t(box.count.x) * box.count.y;
-  }
-  if (area >= std::int64_t(side) * side) l.dirty = {{glm::ivec2(0), glm::ivec2(side)}};
-  for (const SampleBox& box : l.dirty) runRelief(level, box);
-  l.dirty.clear();
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // relief maps, read by terrain.frag
-}
-
-void TerrainLevels::runRelief(int level, const SampleBox& box) {
-  if (box.count.x == 0 || box.count.y == 0) return;
-  const LevelWindow window = windows()[std::size_t(level)];
-  const glm::dvec2 towards = glm::dvec2(sun_) / std::max(std::abs(sun_.x), std::abs(sun_.y));
-  ReliefJob job;
-  job.box = {box.first, box.count};
-  job.window = {window.window.z, window.texel.x, window.texel.y, level};
-  job.march = {float(towards.x), float(towards.y), float(sun_.z / std::hypot(sun_.x, sun_.y)),
-               float(cell_m_ * strideOf(level))};
-  glNamedBufferSubData(relief_job_.name(), 0, sizeof job, &job);
-  glBindBufferBase(GL_UNIFORM_BUFFER, kReliefJobBinding, relief_job_.name());
-  glBindImageTexture(kReliefImage, level == 0 ? fine_relief_.name() : coarse_relief_.name(), 0, GL_FALSE,
-                     level == 0 ? 0 : level - 1, GL_WRITE_ONLY, GL_RGBA16F);
-  glUseProgram(relief_program_.name());
-  glDispatchCompute(GLuint(box.count.x + 7) / 8, GLuint(box.count.y + 7) / 8, 1);
-  stats.relief_samples += std::int64_t(box.count.x) * box.count.y;
-}
-
 void TerrainLevels::bind() const {
   glBindTextureUnit(kFineHeightUnit, fine_height_.name());
   glBindTextureUnit(kCoarseHeightUnit, coarse_height_.name());
@@ -259,6 +236,8 @@ std::array<LevelWindow, kLevelCount> TerrainLevels::windows() const {
   return result;
 }
 
-int TerrainLevels::reachCells() const { return (coarse_pages_ / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1); }
+int TerrainLevels::reachCells() const {
+  return (settings_.coarse_pages / 2 - 1) * kPageSamples * strideOf(kLevelCount - 1);
+}
 
 }  // namespace spoor

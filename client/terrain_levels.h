@@ -19,8 +19,25 @@ struct TerrainStats {
   std::int64_t tiles_uploaded = 0;    // changed tiles sent to level 0
   std::int64_t samples_uploaded = 0;  // of all levels, by both
   std::int64_t relief_samples = 0;    // recomputed by relief.comp
+  std::int64_t blurred_samples = 0;   // by blur_slopes.comp, of all passes
   std::int64_t patches_drawn = 0;
 };
+
+struct TerrainSettings {
+  int fine_pages = 32;    // tiles along a side of the finest window, even
+  int coarse_pages = 12;  // pages along a side of each coarser window, even; see windowsNest
+  // Samples along a patch of the finest level, a power of two from 4 to kFinePatchSamples: the mesh before tessellation
+  // has a vertex for each. Coarser levels keep patches of 16 samples, each as wide as 4, 16, .. of the largest here.
+  int fine_patch_samples = render::kFinePatchSamples;
+  // Passes of the 3 x 3 Gaussian over the finest level's slopes, 0 .. kBlurPassesLimit. Coarser levels have none: 16
+  // passes blur by 2.8 cells (standard deviation), which is less than the four cells over which level 1 averages.
+  int blur_passes = 0;
+};
+
+/// Side of the finest level's patches for a terrain of that many patches in a row (Persson's numVerticesPerRow):
+/// the largest power of two with which a row of the world has at least `patches_per_row` of them, within 4 cells and
+/// the 64 that tessellation can cut to single cells; 0 patches: 64.
+int finePatchSamples(std::int32_t width_cells, std::int32_t patches_per_row);
 
 /// One patch to draw, as the shaders read it: first cell x, y; level; flags.
 using Patch = glm::ivec4;
@@ -29,10 +46,8 @@ using Patch = glm::ivec4;
 /// moving the focus loads only pages that came into view, and a changed tile uploads only itself.
 class TerrainLevels {
  public:
-  /// @param fine_pages    tiles along a side of the finest window, even
-  /// @param coarse_pages  pages along a side of each coarser window, even; see windowsNest
-  /// @param sun           unit vector towards the sun, z > 0
-  TerrainLevels(int fine_pages, int coarse_pages, double cell_m, const glm::dvec3& sun);
+  /// @param sun  unit vector towards the sun, z > 0
+  TerrainLevels(const TerrainSettings& settings, double cell_m, const glm::dvec3& sun);
 
   /// True where every window lies inside the part of the next one that has not begun to turn into a coarser one.
   static bool windowsNest(int fine_pages, int coarse_pages);
@@ -49,8 +64,13 @@ class TerrainLevels {
   /// Adds the patches that the camera may see.
   void collectPatches(const CameraFrame& camera, std::vector<Patch>& out) const;
 
+  const TerrainSettings& settings() const { return settings_; }
+
   /// Distance from the focus that the coarsest window covers on every side, in cells.
   int reachCells() const;
+
+  /// The finest level's relief as relief.comp lays it out, row-major from the window's first sample, for tests.
+  std::vector<glm::vec4> fineRelief() const;
 
   TerrainStats stats;
 
@@ -81,19 +101,22 @@ class TerrainLevels {
   void uploadBox(int level, const SampleBox& box, const std::int32_t* height_q);
   void makeRelief(int level);
   void runRelief(int level, const SampleBox& box);
+  void blurSlopes(const std::vector<SampleBox>& boxes);
+  void dispatchJob(int level, const SampleBox& box, int pass);
   bool holds(int level, glm::ivec2 page) const;
   HeightRange rangeAround(int level, glm::ivec2 page) const;
   void collectLevel(int level, const CameraFrame& camera, std::vector<Patch>& out) const;
   Page& slot(int level, glm::ivec2 page);
   const Page& slot(int level, glm::ivec2 page) const;
 
-  int coarse_pages_;
+  TerrainSettings settings_;
   double cell_m_;
   glm::dvec3 sun_;
   std::array<Level, render::kLevelCount> levels_;
   GlTexture fine_height_, coarse_height_, fine_relief_, coarse_relief_;
+  std::array<GlTexture, 2> blur_slopes_;  // between passes; level 0, where there are two or more
   GlBuffer relief_job_;
-  GlProgram relief_program_;
+  GlProgram relief_program_, blur_program_;
 };
 
 }  // namespace spoor

@@ -64,7 +64,7 @@ void TerrainLevels::collectLevel(int level, const CameraFrame& camera, std::vect
   const Level& l = levels_[std::size_t(level)];
   const bool coarsest = level + 1 == kLevelCount;
   const int stride = 1 << (level * kLevelShift);
-  const int patch_samples = level == 0 ? kFinePatchSamples : kCoarsePatchSamples;
+  const int patch_samples = level == 0 ? settings_.fine_patch_samples : kCoarsePatchSamples;
   PatchGrid grid;
   grid.per_page = kPageSamples / patch_samples;
   grid.side = l.page_count * grid.per_page;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "client/column_renderer.h"
 #include "shaders/rules/limits.h"
 #include "shared/base/assert.h"
 
@@ -15,6 +16,7 @@ namespace spoor {
 namespace {
 
 constexpr double kUnits = rules::kUnitsPerMetre;
+constexpr double kSmallestSize_cells = 3.0;  // a view is as wide as bodies are large, but never closer than this
 
 struct Box {
   glm::dvec2 low_m, high_m;
@@ -74,6 +76,12 @@ std::optional<glm::dvec2> crossing(const std::array<glm::dvec2, 2>& a, const std
   return a[0] + on_a * along_a;
 }
 
+glm::dvec2 nearestOn(const std::array<glm::dvec2, 2>& segment, const glm::dvec2& place_m) {
+  const glm::dvec2 along = segment[1] - segment[0];
+  const double length_squared = std::max(glm::dot(along, along), 1e-12);
+  return segment[0] + along * glm::clamp(glm::dot(place_m - segment[0], along) / length_squared, 0.0, 1.0);
+}
+
 const Tile* tileAt(const TerrainView& view, const glm::dvec2& place_m) {
   const glm::dvec2 tile = glm::floor(place_m * kUnits / double(view.base->pack().cell_q * rules::kTileSize));
   return view.state->tiles.find({std::int32_t(tile.x), std::int32_t(tile.y)});
@@ -95,6 +103,10 @@ glm::dvec2 tracksMiddle(const TerrainView& view) {
       for (const auto& a : segmentsOf(paths[first]))
         for (const auto& b : segmentsOf(paths[second]))
           if (const auto place_m = crossing(a, b); place_m && tileAt(view, *place_m) != nullptr) consider(*place_m);
+  if (best_away < std::numeric_limits<double>::max()) return best_m;
+  for (const Path& path : paths)
+    for (const auto& segment : segmentsOf(path))
+      if (const glm::dvec2 place_m = nearestOn(segment, middle_m); tileAt(view, place_m) != nullptr) consider(place_m);
   if (best_away < std::numeric_limits<double>::max()) return best_m;
   const double tile_m = rules::kTileSize * view.base->pack().cell_q / kUnits;
   for (const Tile* tile : view.state->tiles.sorted()) consider((glm::dvec2(tile->at.x, tile->at.y) + 0.5) * tile_m);
@@ -140,8 +152,8 @@ Camera followView(const TerrainView& view, int body_index) {
   const ScenePack& pack = view.base->pack();
   SPOOR_ASSERT(body_index >= 0 && std::size_t(body_index) < view.state->poses.size());
   const Pose& pose = view.state->poses[std::size_t(body_index)];
-  const double size_m =
-      std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index), 8.0 * pack.cell_q / kUnits);
+  const double size_m = std::max(sizeOnPath(pack, pack.bodies[std::size_t(body_index)].path_index),
+                                 kSmallestSize_cells * pack.cell_q / kUnits);
   const double heading = double(pose.yaw) / 65536.0 * 2.0 * std::numbers::pi;
   const glm::dvec2 ahead(std::cos(heading), std::sin(heading));
   const glm::dvec2 aside(-ahead.y, ahead.x);
@@ -156,7 +168,7 @@ Camera followView(const TerrainView& view, int body_index) {
 Camera trailsView(const TerrainView& view, double sun_azimuth_deg) {
   const ScenePack& pack = view.base->pack();
   const glm::dvec2 middle_m = tracksMiddle(view);
-  double size_m = 16.0 * pack.cell_q / kUnits;
+  double size_m = kSmallestSize_cells * pack.cell_q / kUnits;
   for (const int body : leadingBodies(pack))
     size_m = std::max(size_m, sizeOnPath(pack, pack.bodies[std::size_t(body)].path_index));
   const double ground_m = groundHeight(view, middle_m);
@@ -201,6 +213,35 @@ Camera aboveView(const TerrainView& view, double aspect) {
   camera.up = {0.0, 1.0, 0.0};
   camera.orthographic_height_m = 1.04 * std::max(size_m.y, size_m.x / aspect);
   camera.focus_m = box.middle_m();
+  return camera;
+}
+
+Camera columnsView(const TerrainView& view) {
+  const double cell_m = view.base->pack().cell_q / kUnits;
+  const ColumnCells cells = columnCells(view, glm::ivec2(liveBox(view).middle_m() / cell_m));
+  const glm::dvec2 middle_m = (glm::dvec2(cells.first) + glm::dvec2(cells.count) * 0.5) * cell_m;
+  const double size_m = glm::max(cells.count.x, cells.count.y) * cell_m;
+  const double ground_m = groundHeight(view, middle_m);
+  // From so far away that columns stand all but parallel; one side of a square faces the eye more than the other.
+  constexpr double kAway = 2.95, kView_deg = 22.0;
+  const glm::dvec3 back(0.40, -0.66, 0.64);
+  Camera camera =
+      cameraLookingAt(glm::dvec3(middle_m, ground_m) + glm::normalize(back) * kAway * size_m, {middle_m, ground_m});
+  camera.field_of_view_deg = kView_deg;
+  return camera;
+}
+
+Camera overviewView(const TerrainView& view, double aspect) {
+  const ScenePack& pack = view.base->pack();
+  const glm::dvec2 world_m = glm::dvec2(pack.width_cells, pack.height_cells) * (pack.cell_q / kUnits);
+  const glm::dvec2 middle_m = world_m * 0.5;
+  const double ground_m = groundHeight(view, middle_m);
+  const double size_m = std::max(world_m.y, world_m.x * 1.6 / aspect);
+  constexpr double kView_deg = 34.0;
+  const glm::dvec3 eye_m(middle_m + glm::dvec2(0.0, -0.98 * size_m), ground_m + 1.15 * size_m);
+  Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.06 * size_m), ground_m});
+  camera.field_of_view_deg = kView_deg;
+  camera.focus_m = middle_m;
   return camera;
 }
 

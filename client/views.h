@@ -15,11 +15,17 @@ namespace spoor {
 Camera followView(const TerrainView& view, int body_index);
 
 /// A three-quarter view of the tracks where two paths cross (the crossing nearest to the middle of the live tiles), lit
-/// from the side; where none do, of the live tile nearest to the middle.
+/// from the side; where none do, of the live place on a path, or else the live tile, nearest to the middle.
 Camera trailsView(const TerrainView& view, double sun_azimuth_deg);
 
 /// Straight down on all live tiles, north up, orthographic.
 Camera aboveView(const TerrainView& view, double aspect);
+
+/// Down on what a picture of columns shows (columnCells about the middle of the live tiles), from the south and east.
+Camera columnsView(const TerrainView& view);
+
+/// The whole world from the air, from the south.
+Camera overviewView(const TerrainView& view, double aspect);
 
 /// Bodies worth following: the first of each path.
 std::vector<int> leadingBodies(const ScenePack& pack);

@@ -1,10 +1,15 @@
-// How the ground looks at a place: snow or sand under a low sun.
+// How the ground looks at a place: snow, sand or mud under a low sun.
 #include "relief.glsl"
 #include "light.glsl"
 #include "body_shadow.glsl"
 #include "detail.glsl"
+#include "highlight.glsl"
 
-vec3 groundAlbedo() { return frame.world.z == kGroundSand ? vec3(0.60, 0.43, 0.25) : vec3(0.86, 0.88, 0.91); }
+vec3 groundAlbedo() {
+  if (frame.world.z == kGroundSand) return vec3(0.60, 0.43, 0.25);
+  if (frame.world.z == kGroundMud) return vec3(0.20, 0.135, 0.085);
+  return vec3(0.86, 0.88, 0.91);
+}
 
 /// Sides of a pixel's footprint on the ground [cells]: the shorter and the longer.
 vec2 footprintAt(vec3 rel, vec2 rel_cells) {
@@ -18,9 +23,7 @@ vec2 footprintAt(vec3 rel, vec2 rel_cells) {
 }
 
 /// Colour that the ground sends to the eye, with fog; kShadeNormals: its normal.
-vec3 groundColour(vec3 rel) {
-  vec2 rel_cells = rel.xy / frame.scale.x;
-  vec2 footprint = footprintAt(rel, rel_cells);
+vec3 shadedGround(vec3 rel, vec2 rel_cells, vec2 footprint) {
   // Between the shorter and the longer side: blurring by the longer would wipe out tracks at grazing angles.
   Relief relief = reliefAt(rel_cells, 0.6 * sqrt(footprint.x * footprint.y));
   vec3 smooth_normal = normalize(vec3(-relief.gradient, 1.0));
@@ -37,4 +40,10 @@ vec3 groundColour(vec3 rel) {
   float sky = relief.sky * relief.sky;
   vec3 colour = albedo * (kSunLight * lit + skyLight(smooth_normal, groundAlbedo()) * sky);
   return toScreen(withFog(colour, rel));
+}
+
+vec3 groundColour(vec3 rel) {
+  vec2 rel_cells = rel.xy / frame.scale.x;
+  vec2 footprint = footprintAt(rel, rel_cells);
+  return withHighlight(shadedGround(rel, rel_cells, footprint), rel_cells, footprint.y);
 }

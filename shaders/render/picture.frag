@@ -9,6 +9,7 @@ layout(binding = kDepthUnit) uniform sampler2DMS depth_in;
 layout(location = 0) out vec4 colour_out;
 
 const int kSampleLimit = 8;
+const vec3 kPaper = vec3(0.97);  // behind columns
 
 /// The place that a depth stands for, through the middle of the pixel.
 vec3 placeAt(vec2 screen, float depth) {
@@ -45,5 +46,6 @@ void main() {
   float covered = sum.a / float(sample_count);
   vec3 direction = normalize(frame.ray_forward.xyz + screen.x * frame.ray_right.xyz + screen.y * frame.ray_up.xyz);
   vec3 behind = covered < 1.0 ? toScreen(skyWithSun(direction)) : vec3(0.0);
+  if (frame.world.w == kShadeColumns) behind = kPaper;
   colour_out = vec4(sum.rgb / float(sample_count) + (1.0 - covered) * behind, covered);
 }

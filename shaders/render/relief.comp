@@ -2,25 +2,12 @@
 // In: heights (units kFineHeightUnit, kCoarseHeightUnit). Out: dz/dx, dz/dy, sky share, sun share (image kReliefImage).
 // Group: 8 x 8 samples. Samples within kShadowSteps of the border see the window extended; the morph rim hides them.
 #version 450 core
-#include "surface.glsl"
+#include "relief_job.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std140, binding = kReliefJobBinding) uniform ReliefJobBlock { ReliefJob job; };
 layout(binding = kReliefImage, rgba16f) writeonly uniform image2D relief_out;
 
 const float kSunEdge = 0.05;  // half width of the penumbra, as a tangent: soft, since samples are coarse
-
-ivec2 wrapped(ivec2 at) {
-  int side = job.window.x;
-  ivec2 texel = clamp(at, ivec2(0), ivec2(side - 1)) + job.window.yz;
-  return texel - ivec2(greaterThanEqual(texel, ivec2(side))) * side;
-}
-
-int heightAt(ivec2 at) {
-  ivec2 texel = wrapped(at);
-  if (job.window.w == 0) return texelFetch(fine_height, texel, 0).r;
-  return texelFetch(coarse_height, ivec3(texel, job.window.w - 1), 0).r;
-}
 
 /// Rise from the sample to another [m].
 float rise(int from, ivec2 at) { return float(heightAt(at) - from) / float(kUnitsPerMetre); }
@@ -61,8 +48,5 @@ void main() {
   if (any(greaterThanEqual(in_box, job.box.zw))) return;
   ivec2 at = job.box.xy + in_box;
   int own = heightAt(at);
-  vec2 gradient = vec2(heightAt(at + ivec2(1, 0)) - heightAt(at - ivec2(1, 0)),
-                       heightAt(at + ivec2(0, 1)) - heightAt(at - ivec2(0, 1))) /
-                  (2.0 * job.march.w * float(kUnitsPerMetre));
-  imageStore(relief_out, wrapped(at), vec4(clamp(gradient, -60.0, 60.0), skyShare(at, own), sunShare(at, own)));
+  imageStore(relief_out, wrapped(at), vec4(slopeOf(at), skyShare(at, own), sunShare(at, own)));
 }

@@ -51,5 +51,5 @@ vec3 surfacePoint(int level, ivec2 cell) {
 
 /// Cells along a side of a level's patch.
 int patchCells(int level) {
-  return level == 0 ? kFinePatchSamples : kCoarsePatchSamples << frame.levels[level].window.w;
+  return level == 0 ? frame.origin.w : kCoarsePatchSamples << frame.levels[level].window.w;
 }

@@ -21,7 +21,7 @@ void main() {
   ivec4 piece = patch_vertex[0];
   int level = piece.z;
   int side = patchCells(level);
-  int highest = level == 0 ? kFinePatchSamples : kCoarsePatchSamples;
+  int highest = level == 0 ? side : kCoarsePatchSamples;
   ivec2 corners[5] = ivec2[5](piece.xy + ivec2(0, side), piece.xy, piece.xy + ivec2(side, 0),
                               piece.xy + ivec2(side, side), piece.xy + ivec2(0, side));
   float edges[4];

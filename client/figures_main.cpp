@@ -1,0 +1,202 @@
+// spoor-figures: simulates scenes without a server and draws them as pictures, the thesis's figures among them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include "client/figure_scene.h"
+#include "client/picture_options.h"
+#include "client/views.h"
+#include "shaders/host/gl_context.h"
+#include "shaders/host/make_backend.h"
+#include "shared/base/options.h"
+
+namespace spoor {
+
+namespace {
+
+struct Arguments {
+  std::string folder = ".";
+  std::string only;
+  std::string pack;
+  std::int64_t tick = -1;
+  std::string look = "trails";
+  std::string name;
+  bool highlight = false;
+  bool everything_active = false;
+  bool no_bodies = false;
+  std::int64_t range_mm = 0;
+  double sun_deg = RenderSettings().sun_elevation_deg;
+  BackendChoice backend;
+  PictureArguments picture;
+};
+
+/// A figure of the thesis that needs no pack: one way of displacement with each metric.
+struct DisplacementFigure {
+  const char* number;
+  const char* name;
+  Displacement displacement;
+};
+constexpr DisplacementFigure kDisplacementFigures[] = {{"5.1", "iterative", Displacement::iterative},
+                                                       {"5.2", "direct", Displacement::direct},
+                                                       {"5.3", "spread", Displacement::spread}};
+constexpr std::pair<const char*, Metric> kMetrics[] = {
+    {"euclidean", Metric::euclidean}, {"manhattan", Metric::manhattan}, {"chebyshev", Metric::chebyshev}};
+// Untouched ground is pale, the bottom of the box's hole blue, the highest wall of all nine pictures all but the last
+// red.
+constexpr ColumnSettings kFigureColours{-5000, 0, 40000};
+
+constexpr std::array<std::string_view, 5> kLooks{"trails", "follow", "above", "overview", "columns"};
+
+Result<std::unique_ptr<Backend>> backendFor(const Arguments& arguments) {
+  return makeBackend(arguments.backend, [](const std::string& line) { fmt::print("{}\n", line); });
+}
+
+Status writePicture(const Renderer& renderer, const Arguments& arguments, const std::string& name) {
+  const std::string file = (std::filesystem::path(arguments.folder) / (name + ".png")).string();
+  if (const Status written = writePng(renderer.readPicture(), file); !written) return written;
+  fmt::print("picture {}\n", file);
+  std::fflush(stdout);
+  return {};
+}
+
+Status drawDisplacement(const Arguments& arguments, const RenderSettings& settings, const DisplacementFigure& figure) {
+  for (const auto& [metric_name, metric] : kMetrics) {
+    auto backend = backendFor(arguments);
+    if (!backend) return Error{backend.error()};
+    FigureScene scene(pressedBoxPack(figure.displacement, metric), std::move(*backend));
+    if (const Status run = scene.runTo(kPressedBoxTicks, pressedBoxPoses(scene.pack())); !run) return run;
+    RenderSettings columns = settings;
+    columns.shade = Shade::columns;
+    columns.columns = kFigureColours;
+    columns.bodies = false;  // the box would hide what it did
+    Renderer renderer(scene.pack(), columns);
+    renderer.draw(scene.view(), columnsView(scene.view()));
+    const std::string name = fmt::format("figure_{}_{}_{}", figure.number, figure.name, metric_name);
+    if (const Status written = writePicture(renderer, arguments, name); !written) return written;
+  }
+  return {};
+}
+
+Result<ScenePack> readPack(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return Error{path + ": cannot be opened"};
+  const auto size = std::size_t(file.tellg());
+  if (size > kPackBytesLimit) return Error{fmt::format("{}: {} bytes, over the limit of a pack", path, size)};
+  file.seekg(0);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  auto pack = decodePack(bytes);
+  if (!pack) return Error{path + ": " + pack.error()};
+  return pack;
+}
+
+Camera cameraFor(const std::string& look, const TerrainView& view, const RenderSettings& settings) {
+  const double aspect = double(settings.width_px) / settings.height_px;
+  if (look == "follow") return followView(view, 0);
+  if (look == "above") return aboveView(view, aspect);
+  if (look == "overview") return overviewView(view, aspect);
+  if (look == "columns") return columnsView(view);
+  return trailsView(view, settings.sun_azimuth_deg);
+}
+
+Status drawPack(const Arguments& arguments, RenderSettings settings) {
+  auto pack = readPack(arguments.pack);
+  if (!pack) return Error{pack.error()};
+  if (arguments.everything_active) pack->parameters.active_areas = 0;
+  if (const Status valid = validatePack(*pack); !valid) return Error{arguments.pack + ": " + valid.error()};
+  if (arguments.look == "follow" && pack->bodies.empty()) return Error{arguments.pack + ": no body to follow"};
+  const std::string name = arguments.name.empty()
+                               ? std::filesystem::path(arguments.pack).stem().string() + "_" + arguments.look
+                               : arguments.name;
+  const std::int32_t tick = arguments.tick < 0 ? pack->default_ticks : std::int32_t(arguments.tick);
+  auto backend = backendFor(arguments);
+  if (!backend) return Error{backend.error()};
+  FigureScene scene(std::move(*pack), std::move(*backend));
+  if (const Status run = scene.runTo(tick); !run) return Error{arguments.pack + ": " + run.error()};
+
+  if (arguments.look == "columns") settings.shade = Shade::columns;
+  settings.sun_elevation_deg = arguments.sun_deg;
+  settings.columns = {-std::int32_t(arguments.range_mm) * 10, 0, std::int32_t(arguments.range_mm) * 10};
+  settings.bodies = !arguments.no_bodies;
+  Renderer renderer(scene.pack(), settings);
+  if (arguments.highlight) renderer.highlightTiles(scene.activeTiles());
+  renderer.draw(scene.view(), cameraFor(arguments.look, scene.view(), settings));
+  fmt::print("tick {}, {} tiles simulated in it\n", tick, scene.activeTiles().size());
+  return writePicture(renderer, arguments, name);
+}
+
+Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
+  std::error_code problem;
+  std::filesystem::create_directories(arguments.folder, problem);
+  if (problem) return Error{fmt::format("folder {}: {}", arguments.folder, problem.message())};
+  const auto context = openHeadlessContext();
+  if (!context) return Error{context.error()};
+  fmt::print("renderer {} ({})\n", (*context)->renderer(), (*context)->path());
+  if (!arguments.pack.empty()) return drawPack(arguments, settings);
+  for (const DisplacementFigure& figure : kDisplacementFigures)
+    if (arguments.only.empty() || arguments.only == figure.number)
+      if (const Status drawn = drawDisplacement(arguments, settings, figure); !drawn) return drawn;
+  return {};
+}
+
+int refuse(const std::string& why) {
+  fmt::print(stderr, "spoor-figures: {}\n", why);
+  return 2;
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  Options options(
+      "spoor-figures",
+      "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
+  options.add("out", "DIR", "where pictures go", &arguments.folder);
+  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3", &arguments.only);
+  options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);
+  options.add("ticks", "COUNT", "after how many ticks; -1: the pack's own", &arguments.tick, -1, 1 << 30);
+  options.add("look", "LOOK", "trails, follow, above, overview or columns", &arguments.look);
+  options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
+  options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
+              &arguments.range_mm, 0, 100000);
+  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show", &arguments.sun_deg, 1.0,
+              89.0);
+  options.addFlag("highlight", "mark the tiles that the last tick simulated", &arguments.highlight);
+  options.addFlag("all-active", "simulate all of the terrain in every tick", &arguments.everything_active);
+  options.addFlag("no-bodies", "leave the bodies out of the picture", &arguments.no_bodies);
+  options.add("backend", "NAME", "auto, gl or native; auto: gl on a hardware renderer", &arguments.backend.name);
+  options.add("gl-device", "NAME", "of the gl backend: auto, surfaceless or an EGL device's number",
+              &arguments.backend.gl_device);
+  addPictureOptions(options, arguments.picture);
+  options.parseOrExit(argc, argv);
+
+  const auto settings = pictureSettings(arguments.picture);
+  if (!settings) return refuse(settings.error());
+  if (std::ranges::find(kLooks, arguments.look) == kLooks.end())
+    return refuse(fmt::format("--look \"{}\": want trails, follow, above, overview or columns", arguments.look));
+  const auto known = [&](const DisplacementFigure& figure) { return arguments.only == figure.number; };
+  if (!arguments.only.empty() && std::ranges::none_of(kDisplacementFigures, known))
+    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3", arguments.only));
+  if (const Status done = drawAll(arguments, *settings); !done) {
+    fmt::print(stderr, "spoor-figures: {}\n", done.error());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace spoor
+
+int main(int argc, char** argv) {
+  try {
+    return spoor::run(argc, argv);
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "spoor-figures: {}\n", problem.what());
+    return 1;
+  }
+}
