@@ -14,8 +14,8 @@ constexpr int kSize = rules::kTileSize;
 // As GLSL's std430 lays them out: ints, one after the other.
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
-static_assert(sizeof(rules::TileResult) == 44 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 48);
-static_assert(sizeof(rules::TickHead) == 32 + rules::kSubStepMost * sizeof(rules::SubStepLists));
+static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 80);
+static_assert(sizeof(rules::TickHead) == 56 + rules::kSubStepMost * sizeof(rules::SubStepLists));
 static_assert(rules::kSubStepMost == kSubStepLimit);
 
 /// Collects tables as bytes.
@@ -71,6 +71,7 @@ class TableMaker {
     tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 4 / rules::kGatherQuads / shape_.group), shape_);
     tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
     tables_.sweep = writer_.dispatch(tiles * rules::kBlocksPerSide * rules::kBlocksPerSide, shape_);
+    tables_.slope = writer_.dispatch(tiles * rules::kTileCells / rules::kSlabRows / shape_.group, shape_);
     tables_.hash = writer_.dispatch(tiles, shape_);
     int sweep = 0;
     covered_before_.assign(std::size_t(count_), 0);
@@ -150,8 +151,10 @@ class TableMaker {
       step.domain_cells += std::int64_t(entry.width) * entry.rows;
       step.mask_words += std::int64_t(entry.width) * groupsFor(entry.rows, rules::kMaskRows);
       step.row_chunks += std::int64_t(entry.rows) * groupsFor(entry.width, shape_.group);
-      row_count_ += entry.rows;
+      step.longest_side = std::max({step.longest_side, entry.width, entry.rows});
+      row_count_ += entry.rows + 1;  // and the number of cells that soil was left in
     }
+    step.domain_count = int(domains.size());
     step.domains = writer_.put(domains);
     step.domain_tiles = writer_.put(domain_tiles);
     step.domain_blocks = writer_.dispatch(blocks, shape_);
@@ -216,6 +219,12 @@ class TableMaker {
     return entry;
   }
 
+  /// A dispatch of so many groups, which are none until a shader finds that there is work for them.
+  rules::GroupCount waiting(int groups) const {
+    const int x = std::clamp(groups, 1, shape_.groups_per_row);
+    return {x, 0, 1, (groups + x - 1) / x};
+  }
+
   /// The head comes last: it ends in the row flags of all sub-steps.
   void putHead() {
     rules::TickHead head{};
@@ -223,10 +232,15 @@ class TableMaker {
     head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
     head.slope_threshold = rules::exchangeThreshold(plan_.parameters.slope_threshold_q);
     head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.diagonal_threshold_q);
+    head.compression = plan_.parameters.compression_q16;
+    head.compaction_limit = plan_.parameters.compaction_limit_q16;
+    head.penetration_divider = plan_.parameters.penetration_divider_q;
+    head.spread_cells = plan_.parameters.spread_cells;
     head.highest = -rules::kHeightLimit;
-    for (rules::SubStepLists& lists : head.lists) {
-      const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
-      lists = {empty, empty, empty};
+    const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
+    for (std::size_t i = 0; i < tables_.sub_steps.size(); ++i) {
+      const SubStepTables& step = tables_.sub_steps[i];
+      head.lists[i] = {empty, empty, empty, waiting(step.domain_count), waiting(step.domain_blocks.count)};
     }
     std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(std::max(row_count_, 1)) * sizeof(std::int32_t));
     std::memcpy(bytes.data(), &head, sizeof(head));

@@ -46,7 +46,9 @@ struct SubStepTables {
   TableRange bodies, domains, domain_tiles;
   GroupList cover, place, primitives, domain_blocks;
   std::int64_t point_count = 0, primitive_count = 0, domain_cells = 0, mask_words = 0, row_chunks = 0;
-  int first_step = 0;  // of the relaxation
+  int domain_count = 0;
+  int longest_side = 0;  // of a domain, in cells
+  int first_step = 0;    // of the relaxation
   int sweep_count = 0;
 };
 
@@ -56,7 +58,7 @@ struct TickTables {
   Parameters parameters;
   TableRange head;   // TickHead and row flags
   TableRange tiles;  // TileEntry [active tiles]
-  GroupList gather, exchange, sweep, hash;
+  GroupList gather, exchange, sweep, slope, hash;
   std::vector<SubStepTables> sub_steps;
   bool beneath = false;         // may an underside, or the height limit, stop soil from coming somewhere?
   std::vector<int> tile_index;  // [plan.active] where the shaders have that tile

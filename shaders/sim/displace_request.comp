@@ -2,14 +2,10 @@
 // In: row chunks, overlap, target. Out: requested, row flags, receivers, tick. A lane takes a cell.
 // Twin: displace.cpp, addToTargets.
 #version 450 core
-#include "tick.glsl"
+#include "displace.glsl"
 
-layout(std430, binding = kBindDomains) readonly buffer Domains { DomainEntry domains[]; };
 layout(std430, binding = kBindRowChunks) readonly buffer RowChunks { RowChunk row_chunks[]; };
-layout(std430, binding = kBindOverlap) readonly buffer Overlap { int overlap[]; };
 layout(std430, binding = kBindTarget) readonly buffer Target { int target[]; };
-layout(std430, binding = kBindRequestedLow) buffer RequestedLow { uint requested_low[]; };
-layout(std430, binding = kBindRequestedHigh) buffer RequestedHigh { uint requested_high[]; };
 layout(std430, binding = kBindReceivers) writeonly buffer Receivers { RowChunk receivers[]; };
 
 void listRow(int domain, int row) {
@@ -24,14 +20,15 @@ void listRow(int domain, int row) {
 void main() {
   if (groupIndex() >= tick.lists[sub_step].rows.used) return;
   RowChunk chunk = row_chunks[groupIndex()];
+  DomainEntry domain = domains[chunk.domain];
   int column = chunk.chunk * kGroup + lane();
-  int width = domains[chunk.domain].width;
-  if (column >= width) return;
-  int cell = domains[chunk.domain].first_cell + chunk.row * width + column;
-  int amount = overlap[cell];
-  if (amount <= 0 || target[cell] == kNoTarget) return;
-  int to = domains[chunk.domain].first_cell + target[cell];
-  uint before = atomicAdd(requested_low[to], uint(amount));
-  if (before + uint(amount) < before) atomicAdd(requested_high[to], 1u);
-  listRow(chunk.domain, target[cell] / width);
+  if (column >= domain.width) return;
+  int cell = chunk.row * domain.width + column;
+  if (overlap[domain.first_cell + cell] <= 0 || target[domain.first_cell + cell] == kNoTarget) return;
+  Source source = sourceAt(domain, cell, target[domain.first_cell + cell]);
+  for (int i = 0; i < source.parts; ++i) {
+    ivec2 to = partTarget(source, i);
+    request(domain.first_cell + to.y * domain.width + to.x, partAmount(source, i));
+    listRow(chunk.domain, to.y);
+  }
 }
