@@ -98,7 +98,7 @@ void checkRandomWorld(const BackendCase& backend_case, int columns, int rows, st
   DenseWorld dense = denseCopy(*rig);
   rig->moveSoil();
   const auto overlap = oracleOverlap(dense, world.pack.parameters.obstacle_threshold_q);
-  oracleDisplace(dense, overlap, oracleNearest(dense, overlap), world.pack.parameters.obstacle_threshold_q);
+  oracleDisplace(dense, overlap, world.pack.parameters, wholeWorld(dense));
   const auto after = rig->height();
   ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
   ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)),

@@ -49,7 +49,7 @@ void checkAgainstAllCells(const Search& search, const std::string& name) {
   DenseWorld dense{BaseTerrain(pack)};
   dense.columns = dense.inside_columns = columns;
   dense.rows = dense.inside_rows = rows;
-  const auto expected = oracleNearest(dense, search.overlap);
+  const auto expected = oracleNearest(dense, search.overlap, {}, wholeWorld(dense));
   for (std::size_t i = 0; i < expected.size(); ++i)
     if (search.overlap[i] > 0) {
       ASSERT_EQ(search.target[i], expected[i]) << name << ", cell " << int(i) % columns << ", " << int(i) / columns;

@@ -14,10 +14,20 @@ namespace {
 constexpr int kSize = rules::kTileSize;
 constexpr int kMostSubSteps = 32;
 
+std::uint64_t cellHash(int x, int y, Plane plane, std::int32_t value) {
+  const rules::uint key = rules::cellKey(x, y, int(plane));
+  return rules::cellMixLow(key, value) + (std::uint64_t(rules::cellMixHigh(key, value)) << 32);
+}
+
 }  // namespace
 
 Oracle::Oracle(const BaseTerrain& base, const PackId& id)
-    : base_(&base), id_(id), extent_(tileExtent(base.pack())), world_(base), base_height_(world_.height) {
+    : base_(&base),
+      id_(id),
+      parameters_(base.pack().parameters),
+      extent_(tileExtent(base.pack())),
+      world_(base),
+      base_height_(world_.height) {
   const auto tiles = std::size_t(extent_.x) * std::size_t(extent_.y);
   live_.assign(tiles, 0);
   wake_.assign(tiles, 0);
@@ -25,8 +35,8 @@ Oracle::Oracle(const BaseTerrain& base, const PackId& id)
   previous_poses_ = poses_;
 }
 
-/// The cells that a mesh's box meets, and one more on every side.
-Oracle::Box Oracle::searchBox(int body_index, const Pose& pose) const {
+/// The cells that a mesh's box meets, and `margin` more on every side.
+OracleBox Oracle::boxAround(int body_index, const Pose& pose, int margin) const {
   const OracleBody body = placeForOracle(base_->pack(), body_index, pose);
   int x0 = INT32_MAX, y0 = INT32_MAX, x1 = INT32_MIN, y1 = INT32_MIN;
   for (const auto& point : body.points) {
@@ -37,9 +47,23 @@ Oracle::Box Oracle::searchBox(int body_index, const Pose& pose) const {
     y0 = std::min(y0, y);
     y1 = std::max(y1, y);
   }
-  if (x1 < 0 || y1 < 0 || x0 >= world_.inside_columns || y0 >= world_.inside_rows) return {0, 0, 0, 0};
-  return {std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(x1 + 2, world_.inside_columns),
-          std::min(y1 + 2, world_.inside_rows)};
+  if (x1 < 0 || y1 < 0 || x0 >= world_.inside_columns || y0 >= world_.inside_rows) return {};
+  return {std::max(x0 - margin, 0), std::max(y0 - margin, 0), std::min(x1 + 1 + margin, world_.inside_columns),
+          std::min(y1 + 1 + margin, world_.inside_rows)};
+}
+
+/// One cell around a body, and as many more as spread displacement may reach beyond it.
+int Oracle::searchMargin() const {
+  return parameters_.displacement == Displacement::spread ? 1 + parameters_.spread_cells : 1;
+}
+
+OracleBox Oracle::searchBox(int body_index, const Pose& pose) const {
+  const OracleBox box = boxAround(body_index, pose, searchMargin());
+  return parameters_.active_areas == 0 && !box.empty() ? wholeWorld(world_) : box;
+}
+
+OracleBox Oracle::activeBox(int body_index, const Pose& pose) const {
+  return boxAround(body_index, pose, searchMargin() + parameters_.active_margin_cells);
 }
 
 /// Sub-steps of at most a cell each: the body's shift, and what its farthest vertex moves by turning (spin left out).
@@ -62,18 +86,18 @@ int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const 
 }
 
 /// Boxes of the bodies that take part; boxes that overlap become the box of both, until none do.
-std::vector<Oracle::Box> Oracle::searchDomains(const std::vector<bool>& takes_part,
-                                               const std::vector<Pose>& poses) const {
-  std::vector<Box> boxes;
+std::vector<OracleBox> Oracle::searchDomains(const std::vector<bool>& takes_part,
+                                             const std::vector<Pose>& poses) const {
+  std::vector<OracleBox> boxes;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Box box = takes_part[i] ? searchBox(int(i), poses[i]) : Box{0, 0, 0, 0};
+    const OracleBox box = takes_part[i] ? searchBox(int(i), poses[i]) : OracleBox{};
     if (!box.empty()) boxes.push_back(box);
   }
   for (bool joined = true; joined;) {
     joined = false;
     for (std::size_t i = 0; i < boxes.size() && !joined; ++i)
       for (std::size_t j = i + 1; j < boxes.size() && !joined; ++j) {
-        const Box &a = boxes[i], &b = boxes[j];
+        const OracleBox &a = boxes[i], &b = boxes[j];
         if (a.x0 >= b.x1 || b.x0 >= a.x1 || a.y0 >= b.y1 || b.y0 >= a.y1) continue;
         boxes[i] = {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
         boxes.erase(boxes.begin() + std::ptrdiff_t(j));
@@ -83,12 +107,12 @@ std::vector<Oracle::Box> Oracle::searchDomains(const std::vector<bool>& takes_pa
   return boxes;
 }
 
-void Oracle::markTiles(const Box& box, std::vector<std::uint8_t>& tiles) const {
+void Oracle::markTiles(const OracleBox& box, std::vector<std::uint8_t>& tiles) const {
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x) tiles[tileIndex({x / kSize, y / kSize})] = 1;
 }
 
-bool Oracle::meetsTiles(const Box& box, const std::vector<std::uint8_t>& tiles) const {
+bool Oracle::meetsTiles(const OracleBox& box, const std::vector<std::uint8_t>& tiles) const {
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x)
       if (tiles[tileIndex({x / kSize, y / kSize})] != 0) return true;
@@ -115,18 +139,23 @@ std::vector<Pose> Oracle::posesOfSubStep(const std::vector<Pose>& poses, int ste
   return result;
 }
 
-/// Active tiles: the woken ones, where moving bodies stood, every search domain of every sub-step. A body that stands
-/// still takes part once its own search box meets an active tile, which may make more tiles active, and so on.
+/// Active tiles: the woken ones, what lies around moving bodies where they stood and at every sub-step, every search
+/// domain of every sub-step; or simply all. A body that stands still takes part once what lies around it meets an
+/// active tile, and then its search domain may make more tiles active, and so on.
 std::vector<std::uint8_t> Oracle::plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const {
   std::vector<std::uint8_t> tiles = wokenTiles();
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (takes_part[i]) markTiles(searchBox(int(i), poses_[i]), tiles);
+  if (parameters_.active_areas == 0) std::ranges::fill(tiles, std::uint8_t(1));
+  for (int step = 0; step <= sub_steps_; ++step) {
+    const std::vector<Pose> now = posesOfSubStep(poses, step);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (takes_part[i]) markTiles(activeBox(int(i), now[i]), tiles);
+  }
   for (bool grew = true; grew;) {
     grew = false;
     for (int step = 1; step <= sub_steps_; ++step)
-      for (const Box& domain : searchDomains(takes_part, posesOfSubStep(poses, step))) markTiles(domain, tiles);
+      for (const OracleBox& domain : searchDomains(takes_part, posesOfSubStep(poses, step))) markTiles(domain, tiles);
     for (std::size_t i = 0; i < poses.size(); ++i)
-      if (!takes_part[i] && meetsTiles(searchBox(int(i), poses[i]), tiles)) takes_part[i] = grew = true;
+      if (!takes_part[i] && meetsTiles(activeBox(int(i), poses[i]), tiles)) takes_part[i] = grew = true;
   }
   return tiles;
 }
@@ -143,8 +172,8 @@ void Oracle::setActive(const std::vector<std::uint8_t>& tiles) {
       }
 }
 
-void Oracle::step(const std::vector<Pose>& poses) {
-  const ScenePack& pack = base_->pack();
+void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters) {
+  parameters_ = parameters.value_or(parameters_);
   std::vector<bool> takes_part(poses.size());
   sub_steps_ = 1;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -152,17 +181,12 @@ void Oracle::step(const std::vector<Pose>& poses) {
     if (takes_part[i]) sub_steps_ = std::max(sub_steps_, subStepsFor(int(i), poses_[i], poses[i]));
   }
   setActive(plan(poses, takes_part));
-  const std::vector<std::int32_t> before = world_.height;
+  const DenseWorld before = world_;
+  penetrating_cells_ = kept_back_ = 0;
   crowded_.clear();
   for (int step = 0; step < sub_steps_ && !active_tiles_.empty(); ++step) {
-    std::ranges::fill(world_.underside, rules::kNoUnderside);
-    const std::vector<Pose> now = posesOfSubStep(poses, step + 1);
-    for (std::size_t i = 0; i < now.size(); ++i)
-      if (takes_part[i]) oracleDepth(world_, placeForOracle(pack, int(i), now[i]));
-    const auto overlap = oracleOverlap(world_, pack.parameters.obstacle_threshold_q);
-    crowded_ = oracleDisplace(world_, overlap, oracleNearest(world_, overlap), pack.parameters.obstacle_threshold_q);
-    const int sweeps = pack.parameters.sweeps_per_tick;
-    oracleRelax(world_, pack, (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
+    const int sweeps = parameters_.sweeps_per_tick;
+    subStep(takes_part, posesOfSubStep(poses, step + 1), (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
   }
   wake(before);
   previous_poses_ = poses_;
@@ -170,16 +194,34 @@ void Oracle::step(const std::vector<Pose>& poses) {
   ++tick_;
 }
 
+void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count) {
+  std::ranges::fill(world_.underside, rules::kNoUnderside);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (takes_part[i]) oracleDepth(world_, placeForOracle(base_->pack(), int(i), poses[i]));
+  oracleFrustum(world_, parameters_.frustum_height_q);
+  crowded_.clear();
+  auto overlap = oracleOverlap(world_, parameters_.obstacle_threshold_q);
+  penetrating_cells_ += std::ranges::count_if(overlap, [](std::int32_t value) { return value > 0; });
+  for (const OracleBox& domain : searchDomains(takes_part, poses)) {
+    oracleCompact(world_, overlap, parameters_, domain);
+    const OracleKept kept = oracleDisplace(world_, overlap, parameters_, domain);
+    kept_back_ += kept.sum;
+    crowded_.insert(crowded_.end(), kept.cells.begin(), kept.cells.end());
+  }
+  std::ranges::sort(crowded_);
+  oracleRelax(world_, parameters_, sweep_count);
+}
+
 /// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box
-/// of its changed cells.
-void Oracle::wake(const std::vector<std::int32_t>& before) {
-  const int reach = std::clamp(base_->pack().parameters.sweeps_per_tick, 1, kSize);
+/// of its cells that changed in either plane.
+void Oracle::wake(const DenseWorld& before) {
+  const int reach = std::clamp(parameters_.sweeps_per_tick, 1, kSize);
   for (const TileCoordinate tile : active_tiles_) {
     int x0 = kSize, y0 = kSize, x1 = -1, y1 = -1;
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const std::size_t i = world_.at(tile.x * kSize + x, tile.y * kSize + y);
-        if (world_.height[i] == before[i]) continue;
+        if (world_.height[i] == before.height[i] && world_.compacted[i] == before.compacted[i]) continue;
         x0 = std::min(x0, x);
         x1 = std::max(x1, x);
         y0 = std::min(y0, y);
@@ -203,9 +245,9 @@ std::uint64_t Oracle::stateHash() const {
       if (!isLive({x, y})) continue;
       for (int cell_y = y * kSize; cell_y < (y + 1) * kSize; ++cell_y)
         for (int cell_x = x * kSize; cell_x < (x + 1) * kSize; ++cell_x) {
-          const std::int32_t height = world_.height[world_.at(cell_x, cell_y)];
-          const rules::uint key = rules::cellKey(cell_x, cell_y, int(Plane::height));
-          sum += rules::cellMixLow(key, height) + (std::uint64_t(rules::cellMixHigh(key, height)) << 32);
+          const std::size_t i = world_.at(cell_x, cell_y);
+          sum += cellHash(cell_x, cell_y, Plane::height, world_.height[i]);
+          if (world_.compacted[i] != 0) sum += cellHash(cell_x, cell_y, Plane::compacted, world_.compacted[i]);
         }
       const std::uint64_t place = std::uint64_t(y) << 32 | std::uint64_t(x);
       sum += mix64(mix64(place ^ 0x7f4a7c159e3779b9u) + wakeMask({x, y}));
@@ -214,7 +256,7 @@ std::uint64_t Oracle::stateHash() const {
   rest.put(tick_);
   rest.put(id_.low);
   rest.put(id_.high);
-  putParameters(rest, base_->pack().parameters);
+  putParameters(rest, parameters_);
   rest.put(std::uint32_t(poses_.size()));
   for (const auto* poses : {&poses_, &previous_poses_})
     for (const Pose& pose : *poses) {
@@ -231,6 +273,7 @@ Ledger Oracle::ledger() const {
       if (!isLive({x / kSize, y / kSize})) continue;
       ledger.initial += base_height_[world_.at(x, y)];
       ledger.ground += world_.height[world_.at(x, y)];
+      ledger.compacted += world_.compacted[world_.at(x, y)];
     }
   return ledger;
 }

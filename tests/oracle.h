@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "shaders/rules/raster.h"
@@ -15,6 +16,7 @@ struct DenseWorld {
   int columns = 0, rows = 0;                             // of the arrays: whole tiles
   int inside_columns = 0, inside_rows = 0;               // of the world
   std::vector<std::int32_t> height, bedrock, underside;  // [rows * columns], 0.1 mm
+  std::vector<std::int32_t> compacted;                   // [rows * columns] soil pressed together, 0.1 mm
   std::vector<std::uint8_t> active;                      // [rows * columns] 1: the cell's tile is active
 
   explicit DenseWorld(const BaseTerrain& base);
@@ -42,27 +44,53 @@ std::int64_t planeHeight(const rules::RasterPoint& a, const rules::RasterPoint& 
 /// Stage depth: lowers the world's undersides to a body, looking at every cell near it.
 void oracleDepth(DenseWorld& world, const OracleBody& body);
 
+/// A search domain: cells [x0, x1) x [y0, y1) of the world.
+struct OracleBox {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+  bool holds(int x, int y) const { return x >= x0 && y >= y0 && x < x1 && y < y1; }
+};
+OracleBox wholeWorld(const DenseWorld& world);
+
+/// The end of stage depth: bodies higher than the frustum above bedrock are not there.
+void oracleFrustum(DenseWorld& world, int frustum_height);
+
 /// Stage penetration: overlap of every cell (padding cells are obstacles).
 std::vector<std::int32_t> oracleOverlap(const DenseWorld& world, int obstacle_threshold);
 
-/// Stage nearest: for every penetrating cell the nearest free cell of the whole world as an index into the arrays, else
-/// kNoTarget: smallest distance, then smallest y, then smallest x.
-std::vector<std::int32_t> oracleNearest(const DenseWorld& world, const std::vector<std::int32_t>& overlap);
+/// Its second part: presses some of a domain's overlap together, out of heights and overlap onto the compacted plane.
+void oracleCompact(DenseWorld& world, std::vector<std::int32_t>& overlap, const Parameters& parameters,
+                   const OracleBox& domain);
 
-/// Stage displace. Returns the cells that kept some of their overlap for want of room.
-std::vector<std::size_t> oracleDisplace(DenseWorld& world, const std::vector<std::int32_t>& overlap,
-                                        const std::vector<std::int32_t>& target, int obstacle_threshold);
+/// Stage nearest: for every penetrating cell of the domain a free cell of it as an index into the arrays, else
+/// kNoTarget; for iterative displacement for every obstacle too. Exactly: smallest distance, then smallest Euclidean
+/// distance, then smallest y, then smallest x.
+std::vector<std::int32_t> oracleNearest(const DenseWorld& world, const std::vector<std::int32_t>& overlap,
+                                        const Parameters& parameters, const OracleBox& domain);
 
-/// Stage relax: eight matchings per sweep over all pairs whose cells are both active.
-void oracleRelax(DenseWorld& world, const ScenePack& pack, int sweep_count);
+/// The passes of jump flooding over a domain whose longer side is `size`.
+std::vector<int> oracleFloodSteps(NearestSearch search, int size);
+
+/// What stage displace could not place.
+struct OracleKept {
+  std::int64_t sum = 0;            // 0.1 mm * cells
+  std::vector<std::size_t> cells;  // whose soil still reaches into a body
+};
+
+/// Stage displace with all its rounds or iterations, nearest included.
+OracleKept oracleDisplace(DenseWorld& world, std::vector<std::int32_t> overlap, const Parameters& parameters,
+                          const OracleBox& domain);
+
+/// Stage relax: sweeps over all edges between cells that are both active.
+void oracleRelax(DenseWorld& world, const Parameters& parameters, int sweep_count);
 
 /// A whole session, tick by tick, on a DenseWorld.
 class Oracle {
  public:
   explicit Oracle(const BaseTerrain& base, const PackId& id = {});
 
-  /// `poses` must be valid.
-  void step(const std::vector<Pose>& poses);
+  /// `poses` must be valid, and so must be `parameters`, which hold from this tick on.
+  void step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters = {});
 
   std::uint64_t stateHash() const;
   Ledger ledger() const;
@@ -73,29 +101,33 @@ class Oracle {
   const std::vector<TileCoordinate>& activeTiles() const { return active_tiles_; }
   /// Cells that, in the last sub-step of the last tick, kept overlap for want of room.
   const std::vector<std::size_t>& crowdedCells() const { return crowded_; }
+  /// Of all sub-steps of the last tick, as in TickEffect.
+  std::int64_t penetratingCells() const { return penetrating_cells_; }
+  std::int64_t keptBack() const { return kept_back_; }
   const DenseWorld& world() const { return world_; }
+  const Parameters& parameters() const { return parameters_; }
   int subSteps() const { return sub_steps_; }
 
  private:
-  struct Box {
-    int x0, y0, x1, y1;  // cells [x0, x1) x [y0, y1)
-    bool empty() const { return x0 >= x1 || y0 >= y1; }
-  };
-
   std::size_t tileIndex(TileCoordinate at) const { return std::size_t(at.y * extent_.x + at.x); }
-  Box searchBox(int body_index, const Pose& pose) const;
+  OracleBox boxAround(int body_index, const Pose& pose, int margin) const;
+  OracleBox searchBox(int body_index, const Pose& pose) const;
+  OracleBox activeBox(int body_index, const Pose& pose) const;
+  int searchMargin() const;
   int subStepsFor(int body_index, const Pose& from, const Pose& to) const;
-  std::vector<Box> searchDomains(const std::vector<bool>& takes_part, const std::vector<Pose>& poses) const;
+  std::vector<OracleBox> searchDomains(const std::vector<bool>& takes_part, const std::vector<Pose>& poses) const;
   std::vector<std::uint8_t> wokenTiles() const;
-  void markTiles(const Box& box, std::vector<std::uint8_t>& tiles) const;
-  bool meetsTiles(const Box& box, const std::vector<std::uint8_t>& tiles) const;
+  void markTiles(const OracleBox& box, std::vector<std::uint8_t>& tiles) const;
+  bool meetsTiles(const OracleBox& box, const std::vector<std::uint8_t>& tiles) const;
   std::vector<Pose> posesOfSubStep(const std::vector<Pose>& poses, int step) const;
   std::vector<std::uint8_t> plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const;
   void setActive(const std::vector<std::uint8_t>& tiles);
-  void wake(const std::vector<std::int32_t>& before);
+  void subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count);
+  void wake(const DenseWorld& before);
 
   const BaseTerrain* base_;
   PackId id_;
+  Parameters parameters_;
   TileCoordinate extent_;
   DenseWorld world_;
   std::vector<std::int32_t> base_height_;
@@ -105,6 +137,7 @@ class Oracle {
   std::vector<std::size_t> crowded_;
   std::vector<Pose> poses_, previous_poses_;
   std::int32_t tick_ = 0;
+  std::int64_t penetrating_cells_ = 0, kept_back_ = 0;
   int sub_steps_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The stages of a tick, cell by cell, as DESIGN.md and the rule headers describe them.
+// Stages depth and penetration, cell by cell, as DESIGN.md and the rule headers describe them.
 #include <algorithm>
 
 #include "shaders/rules/limits.h"
@@ -10,6 +10,7 @@ namespace {
 
 using rules::kSubcells;
 using Wide = __int128;
+constexpr std::int64_t kDeepSoil = (1 << 29) - 1;  // 0.1 mm; soil deeper than that does not count
 
 /// Twice the area of p, q and a third point, positive where the three turn left.
 std::int64_t turnArea(const rules::RasterPoint& p, const rules::RasterPoint& q, std::int64_t x, std::int64_t y) {
@@ -64,20 +65,6 @@ void lowerToEdge(DenseWorld& world, const OracleBody& body, const std::array<std
     }
 }
 
-/// One pair of a matching: half of what the slope is too steep by, rounded up, as far as there is soil and room.
-void exchangePair(DenseWorld& world, std::size_t a, std::size_t b, int threshold, int obstacle_threshold) {
-  const bool down = world.height[a] > world.height[b];
-  const std::size_t giver = down ? a : b, taker = down ? b : a;
-  const std::int64_t excess = std::int64_t(world.height[giver]) - world.height[taker] - threshold;
-  if (excess <= 0) return;
-  const std::int64_t gap = std::int64_t(world.underside[taker]) - world.height[taker];
-  const std::int64_t room = gap > obstacle_threshold ? gap : 0;
-  const std::int64_t soil = std::int64_t(world.height[giver]) - world.bedrock[giver];
-  const auto moved = std::int32_t(std::min({(excess + 1) / 2, soil, room}));
-  world.height[giver] -= moved;
-  world.height[taker] += moved;
-}
-
 }  // namespace
 
 DenseWorld::DenseWorld(const BaseTerrain& base) {
@@ -88,7 +75,7 @@ DenseWorld::DenseWorld(const BaseTerrain& base) {
   inside_columns = pack.width_cells;
   inside_rows = pack.height_cells;
   height.assign(std::size_t(columns) * std::size_t(rows), 0);
-  bedrock = height;
+  bedrock = compacted = height;
   for (int y = 0; y < inside_rows; ++y)
     for (int x = 0; x < inside_columns; ++x) {
       height[at(x, y)] = base.height(x, y);
@@ -156,6 +143,20 @@ void oracleDepth(DenseWorld& world, const OracleBody& body) {
   for (const auto& edge : body.mesh->edges) lowerToEdge(world, body, edge, x0, y0, x1, y1);
 }
 
+OracleBox wholeWorld(const DenseWorld& world) { return {0, 0, world.inside_columns, world.inside_rows}; }
+
+void oracleFrustum(DenseWorld& world, int frustum_height) {
+  if (frustum_height == 0) return;
+  for (int y = 0; y < world.inside_rows; ++y)
+    for (int x = 0; x < world.inside_columns; ++x) {
+      const std::size_t i = world.at(x, y);
+      const std::int64_t above_bedrock = std::int64_t(world.underside[i]) - world.bedrock[i];
+      // Where a body reaches down as far as heights go, there is nothing to be seen or not (rules/penetration.h).
+      if (above_bedrock > frustum_height && world.underside[i] > -rules::kHeightLimit)
+        world.underside[i] = rules::kNoUnderside;
+    }
+}
+
 std::vector<std::int32_t> oracleOverlap(const DenseWorld& world, int obstacle_threshold) {
   std::vector<std::int32_t> overlap(world.height.size(), rules::kObstacle);
   for (int y = 0; y < world.inside_rows; ++y)
@@ -170,70 +171,28 @@ std::vector<std::int32_t> oracleOverlap(const DenseWorld& world, int obstacle_th
   return overlap;
 }
 
-std::vector<std::int32_t> oracleNearest(const DenseWorld& world, const std::vector<std::int32_t>& overlap) {
-  std::vector<std::int32_t> target(overlap.size(), rules::kNoTarget);
-  std::vector<std::array<int, 2>> free;  // in (y, x) order, so that the first of equally near ones is the right one
-  for (int y = 0; y < world.inside_rows; ++y)
-    for (int x = 0; x < world.inside_columns; ++x)
-      if (overlap[world.at(x, y)] == rules::kFree) free.push_back({x, y});
-  for (int y = 0; y < world.inside_rows; ++y)
-    for (int x = 0; x < world.inside_columns; ++x) {
-      if (overlap[world.at(x, y)] <= 0) continue;
-      std::int64_t nearest = INT64_MAX;
-      for (const auto& [free_x, free_y] : free) {
-        const std::int64_t square = std::int64_t(free_x - x) * (free_x - x) + std::int64_t(free_y - y) * (free_y - y);
-        if (square >= nearest) continue;
-        nearest = square;
-        target[world.at(x, y)] = std::int32_t(world.at(free_x, free_y));
+void oracleCompact(DenseWorld& world, std::vector<std::int32_t>& overlap, const Parameters& parameters,
+                   const OracleBox& domain) {
+  for (int y = domain.y0; y < domain.y1; ++y)
+    for (int x = domain.x0; x < domain.x1; ++x) {
+      const std::size_t i = world.at(x, y);
+      if (overlap[i] <= 0) continue;
+      const std::int64_t compacted = world.compacted[i];
+      std::int64_t share_q16 = parameters.compression_q16;
+      std::int64_t room = rules::kHeightLimit - compacted;
+      if (parameters.compaction_limit_q16 > 0) {
+        // All the soil that the column ever had, as far as it counts.
+        const std::int64_t soil = std::min<std::int64_t>(std::int64_t(world.height[i]) - world.bedrock[i], kDeepSoil) +
+                                  std::min<std::int64_t>(compacted, kDeepSoil);
+        const std::int64_t limit = soil * parameters.compaction_limit_q16 / kOneQ16;
+        room = std::max<std::int64_t>(limit - compacted, 0);
+        share_q16 = limit == 0 ? 0 : share_q16 * room / limit;
       }
+      const auto pressed = std::int32_t(std::min(overlap[i] * share_q16 / kOneQ16, room));
+      world.compacted[i] += pressed;
+      world.height[i] -= pressed;
+      overlap[i] -= pressed;  // 0: an obstacle
     }
-  return target;
-}
-
-std::vector<std::size_t> oracleDisplace(DenseWorld& world, const std::vector<std::int32_t>& overlap,
-                                        const std::vector<std::int32_t>& target, int obstacle_threshold) {
-  std::vector<std::int64_t> requested(overlap.size(), 0), room(overlap.size(), 0);
-  std::vector<std::size_t> crowded;
-  for (std::size_t i = 0; i < overlap.size(); ++i) {
-    const std::int64_t gap = std::int64_t(world.underside[i]) - world.height[i];
-    room[i] = gap > obstacle_threshold ? gap : 0;
-    if (overlap[i] > 0 && target[i] != rules::kNoTarget) requested[std::size_t(target[i])] += overlap[i];
-  }
-  for (std::size_t i = 0; i < overlap.size(); ++i) {
-    if (overlap[i] <= 0) continue;
-    std::int64_t moved = 0;
-    if (target[i] != rules::kNoTarget) {
-      const auto to = std::size_t(target[i]);
-      const bool fits = requested[to] <= room[to];
-      moved = fits ? overlap[i] : std::int64_t(Wide(overlap[i]) * room[to] / requested[to]);
-      world.height[to] += std::int32_t(moved);
-    }
-    world.height[i] -= std::int32_t(moved);
-    if (moved < overlap[i]) crowded.push_back(i);
-  }
-  return crowded;
-}
-
-void oracleRelax(DenseWorld& world, const ScenePack& pack, int sweep_count) {
-  struct Matching {
-    int dx, dy;
-    bool by_row;  // parity of the first cell's y, else of its x
-    int parity;
-  };
-  constexpr Matching order[] = {{1, 0, false, 0}, {1, 0, false, 1}, {0, 1, true, 0},  {0, 1, true, 1},
-                                {1, 1, true, 0},  {1, 1, true, 1},  {-1, 1, true, 0}, {-1, 1, true, 1}};
-  for (int sweep = 0; sweep < sweep_count; ++sweep)
-    for (const Matching& matching : order)
-      for (int y = 0; y < world.inside_rows; ++y)
-        for (int x = 0; x < world.inside_columns; ++x) {
-          if (((matching.by_row ? y : x) & 1) != matching.parity || !world.inside(x + matching.dx, y + matching.dy))
-            continue;
-          const std::size_t a = world.at(x, y), b = world.at(x + matching.dx, y + matching.dy);
-          if (world.active[a] == 0 || world.active[b] == 0) continue;
-          const bool diagonal = matching.dx != 0 && matching.dy != 0;
-          exchangePair(world, a, b, diagonal ? pack.parameters.diagonal_threshold_q : pack.parameters.slope_threshold_q,
-                       pack.parameters.obstacle_threshold_q);
-        }
 }
 
 }  // namespace spoor::test

@@ -82,7 +82,7 @@ void checkRandomWorld(BackendCase backend_case, int columns, int rows, std::uint
     rig->setUnderside(underside);
     DenseWorld dense = denseCopy(*rig);
     rig->relax(0, sweeps);
-    oracleRelax(dense, world.pack, sweeps);
+    oracleRelax(dense, world.pack.parameters, sweeps);
     ASSERT_EQ(rig->height(), insideCells(dense, dense.height))
         << columns << " x " << rows << ", seed " << seed << ", skip " << skip_settled;
     ASSERT_EQ(sumOf(rig->height()), sumOf(ground));
@@ -120,7 +120,7 @@ void checkActiveTiles(const BackendCase& backend_case, const World& world, std::
       for (int x = 0; x < 64; ++x) dense.active[dense.at(tile.x * 64 + x, tile.y * 64 + y)] = 1;
   const auto rig = makeStageRig(backend_case, world, active);
   rig->relax(0, 7);
-  oracleRelax(dense, world.pack, 7);
+  oracleRelax(dense, world.pack.parameters, 7);
   const Cells heights = rig->tileHeights();
   std::size_t next = 0;
   for (const TileCoordinate tile : active)

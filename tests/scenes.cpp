@@ -143,6 +143,49 @@ Simulation World::simulateOn(const BackendCase& backend_case) const {
   return Simulation(base, id, borrowBackend(backend_case));
 }
 
+Parameters randomParameters(std::uint32_t seed) {
+  std::mt19937 engine(seed * 2654435761u + 99);
+  const auto oneOf = [&engine](std::initializer_list<int> values) {
+    return *(values.begin() + engine() % std::uint32_t(values.size()));
+  };
+  Parameters p;
+  p.displacement = Displacement(oneOf({0, 0, 1, 2}));
+  p.nearest = NearestSearch(oneOf({0, 0, 0, 1, 2, 3, 4, 5}));
+  p.metric = Metric(oneOf({0, 0, 1, 2}));
+  p.slopes = SlopeRule(oneOf({0, 0, 1, 2, 3}));
+  p.active_areas = std::uint8_t(oneOf({0, 1, 1, 1, 1, 1, 1}));
+  p.displace_iterations = oneOf({0, 1, 10, 40});
+  p.sweeps_per_tick = oneOf({0, 1, 3, 10});
+  p.compression_q16 = oneOf({0, 0, 0, kOneQ16 * 3 / 10, kOneQ16});
+  p.compaction_limit_q16 = oneOf({0, 1, kOneQ16 / 5, kOneQ16});
+  p.roughness_q16 = oneOf({0, kOneQ16 / 2, kOneQ16, kOneQ16});
+  p.slope_threshold_q = oneOf({0, 1, 7, 350, 700, 2000, kNeverSteep});
+  p.diagonal_threshold_q = oneOf({0, 1, 9, 495, 990, 2828, kNeverSteep});
+  p.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
+  p.penetration_divider_q = oneOf({1, 50, 1000});
+  p.spread_cells = oneOf({1, 3, 16, kSpreadCellsLimit});
+  p.capacity_rounds = oneOf({1, 2, 3, 4});
+  p.active_margin_cells = oneOf({0, 0, 1, 70});
+  p.frustum_height_q = oneOf({0, 0, 0, 1, 900, 6000});
+  return p;
+}
+
+std::string describe(const Parameters& p) {
+  constexpr const char* displacements[] = {"direct", "iterative", "spread"};
+  constexpr const char* searches[] = {"exact", "JFA", "JFA+1", "JFA+2", "1+JFA", "JFA^2"};
+  constexpr const char* metrics[] = {"Euclidean", "Manhattan", "Chebyshev"};
+  constexpr const char* slopes[] = {"exchange", "flux", "interleaved", "scatter"};
+  std::ostringstream text;
+  text << displacements[int(p.displacement)] << " (" << p.displace_iterations << " iterations, " << p.spread_cells
+       << " cells, one per " << p.penetration_divider_q << ", " << p.capacity_rounds << " rounds), "
+       << searches[int(p.nearest)] << ", " << metrics[int(p.metric)] << ", " << slopes[int(p.slopes)] << " ("
+       << p.sweeps_per_tick << " sweeps, roughness " << p.roughness_q16 << "), thresholds " << p.slope_threshold_q
+       << " / " << p.diagonal_threshold_q << " / " << p.obstacle_threshold_q << ", compression " << p.compression_q16
+       << " up to " << p.compaction_limit_q16 << ", frustum " << p.frustum_height_q << ", margin "
+       << p.active_margin_cells << (p.active_areas == 0 ? ", the whole world active" : "");
+  return text.str();
+}
+
 RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   std::mt19937 engine(seed);
   const auto pick = [&engine](int low, int high) { return low + int(engine() % std::uint32_t(high - low + 1)); };
@@ -155,10 +198,7 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   ScenePack& pack = world.pack;
   pack = noisePack(width, height, engine(), pick(-5000, 5000), 5000 + relief, oneOf({0, 40, 500, 3000, 100000}));
   pack.cell_q = oneOf({1000, 777, 500});
-  pack.parameters.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
-  pack.parameters.slope_threshold_q = oneOf({1, 7, 350, 700, 2000});
-  pack.parameters.diagonal_threshold_q = oneOf({1, 9, 495, 990, 2828});
-  pack.parameters.sweeps_per_tick = oneOf({0, 1, 3, 10});
+  pack.parameters = randomParameters(engine());
   const int body_count = pick(1, 3);
   for (int i = 0; i < body_count; ++i) {
     const int size = (pick(0, 5) == 0 ? pick(20, 90) : pick(1, 20)) * pack.cell_q / 2;
@@ -183,11 +223,13 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
     }
     world.ticks.push_back(poses);
   }
+  world.changed = randomParameters(engine());
+  if (pick(0, 2) == 0) world.change = std::size_t(pick(0, tick_count - 1));
   std::ostringstream text;
   text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "
-       << pack.soil_depth_q << ", thresholds " << pack.parameters.slope_threshold_q << " / "
-       << pack.parameters.diagonal_threshold_q << " / " << pack.parameters.obstacle_threshold_q << ", "
-       << pack.parameters.sweeps_per_tick << " sweeps, bodies:";
+       << pack.soil_depth_q << ", " << describe(pack.parameters);
+  if (world.change != SIZE_MAX) text << "; in tick " << world.change + 1 << " now " << describe(world.changed);
+  text << "; bodies:";
   for (const Body& body : pack.bodies) text << ' ' << body.name;
   world.description = text.str();
   return world;
@@ -206,14 +248,20 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
       if (tile->height()[std::size_t(i)] != expected)
         return AssertionFailure() << "cell (" << x << ", " << y << ") is " << tile->height()[std::size_t(i)] << ", not "
                                   << expected;
+      const std::int32_t compacted = tile->compacted() != nullptr ? (*tile->compacted())[std::size_t(i)] : 0;
+      const std::int32_t expected_compacted = oracle.world().compacted[oracle.world().at(x, y)];
+      if (compacted != expected_compacted)
+        return AssertionFailure() << "cell (" << x << ", " << y << ") has " << compacted << " of compacted soil, not "
+                                  << expected_compacted;
     }
     if (tile->wake_mask != oracle.wakeMask(at))
       return AssertionFailure() << "tile (" << at.x << ", " << at.y << ") has wake mask " << tile->wake_mask << ", not "
                                 << oracle.wakeMask(at);
   }
   if (state.ledger != oracle.ledger())
-    return AssertionFailure() << "ledger: ground " << state.ledger.ground << " of " << state.ledger.initial << ", not "
-                              << oracle.ledger().ground << " of " << oracle.ledger().initial;
+    return AssertionFailure() << "ledger: ground " << state.ledger.ground << " and compacted " << state.ledger.compacted
+                              << " of " << state.ledger.initial << ", not " << oracle.ledger().ground << " and "
+                              << oracle.ledger().compacted << " of " << oracle.ledger().initial;
   if (stateHash(state) != oracle.stateHash()) return AssertionFailure() << "state hash differs";
   return ::testing::AssertionSuccess();
 }

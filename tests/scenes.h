@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,11 +49,24 @@ class World {
   Simulation simulateOn(const BackendCase& backend_case) const;
 };
 
-/// A small world of a seed: its size is a multiple of nothing, its ground, thresholds and bodies are anything, and the
+/// Parameters of a seed: every method, and numbers at and between the ends of what makes a difference.
+Parameters randomParameters(std::uint32_t seed);
+
+/// All of them, in words and numbers.
+std::string describe(const Parameters& parameters);
+
+/// A small world of a seed: its size is a multiple of nothing, its ground, parameters and bodies are anything, and the
 /// bodies wander, turn, rise and fall, some faster than a cell a tick, some out of the world.
 struct RandomWorld {
   ScenePack pack;
   std::vector<std::vector<Pose>> ticks;  // poses of every tick
+  std::size_t change = SIZE_MAX;         // index of the tick from which on `changed` holds
+  Parameters changed;
+
+  /// What a tick is given besides its poses.
+  std::optional<Parameters> changeAt(std::size_t tick) const {
+    return tick == change ? std::optional(changed) : std::nullopt;
+  }
 
   std::string description;
 };

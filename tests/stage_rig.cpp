@@ -131,11 +131,13 @@ std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const Wo
 
 DenseWorld denseCopy(const StageRig& rig) {
   DenseWorld dense(rig.world().base);
-  const Cells height = rig.height(), underside = rig.underside();
+  const Cells height = rig.height(), underside = rig.underside(), compacted = rig.compacted();
   for (int y = 0; y < dense.inside_rows; ++y)
     for (int x = 0; x < dense.inside_columns; ++x) {
-      dense.height[dense.at(x, y)] = height[std::size_t(y * dense.inside_columns + x)];
-      dense.underside[dense.at(x, y)] = underside[std::size_t(y * dense.inside_columns + x)];
+      const auto i = std::size_t(y * dense.inside_columns + x);
+      dense.height[dense.at(x, y)] = height[i];
+      dense.underside[dense.at(x, y)] = underside[i];
+      dense.compacted[dense.at(x, y)] = compacted[i];
     }
   std::ranges::fill(dense.active, std::uint8_t(1));
   return dense;

@@ -113,7 +113,7 @@ class NativeStageRig final : public StageRig {
 std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const World& world,
                                        std::vector<TileCoordinate> active = {});
 
-/// A dense world with the heights and undersides that a rig holds, all cells active.
+/// A dense world with the planes that a rig holds, all cells active.
 DenseWorld denseCopy(const StageRig& rig);
 
 /// The world's cells of one of its planes.
