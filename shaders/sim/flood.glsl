@@ -7,6 +7,6 @@
 const int kPlaceBits = 14;
 
 int packedPlace(int x, int y) { return y << kPlaceBits | x; }
-ivec2 placeOf(int packed) { return ivec2(packed & ((1 << kPlaceBits) - 1), packed >> kPlaceBits); }
+ivec2 placeOf(int place) { return ivec2(place & ((1 << kPlaceBits) - 1), place >> kPlaceBits); }
 
 #endif
