@@ -78,6 +78,18 @@ TEST_P(DepthStage, BeneathAnArchTheGapStaysHigh) {
   EXPECT_EQ(middle, (std::vector<std::int32_t>{-100, -100, -100, 1400, 1400, 1400, -100, -100, -100}));
 }
 
+TEST_P(DepthStage, WhatIsHigherThanTheFrustumIsNotSeen) {
+  ScenePack pack = flatPack(9, 3);
+  pack.parameters.frustum_height_q = 100000;  // above bedrock, which lies 100000 deep
+  addBody(pack, archMesh(8000, 1000, 3000), 4500, 1500, 100);
+  const World world(std::move(pack));
+  const auto rig = rigOf(world);
+  rig->press({placeBody(world.pack, 0, initialState(world.id, world.base).poses[0])});
+  const auto cells = rig->underside();
+  const std::vector<std::int32_t> middle(cells.begin() + 9, cells.begin() + 18);
+  EXPECT_EQ(middle, (std::vector<std::int32_t>{-100, -100, -100, kNone, kNone, kNone, -100, -100, -100}));
+}
+
 TEST_P(DepthStage, TheLowestOfSeveralBodiesCounts) {
   ScenePack pack = flatPack(5, 5);
   addBody(pack, boxMesh(2000, 2000, 500), 2000, 2500, 100);
@@ -102,6 +114,7 @@ void checkRandomBodies(const BackendCase& backend_case, int width, int height, i
   for (const Mesh& mesh : {boxMesh(size, size / 3, size), wedgeMesh(size, size, size / 2), tetrahedronMesh(size / 2),
                            archMesh(size, size / 2, size), bladeMesh(size, size / 4)})
     addBody(pack, mesh, 0, 0, 0);
+  if (seed % 2 == 1) pack.parameters.frustum_height_q = pack.soil_depth_q + 300;
   const World world(std::move(pack));
   for (int round = 0; round < 6; ++round) {
     std::vector<PlacedBody> bodies;
@@ -118,6 +131,7 @@ void checkRandomBodies(const BackendCase& backend_case, int width, int height, i
       bodies.push_back(placeBody(world.pack, i, pose));
       oracleDepth(dense, placeForOracle(world.pack, i, pose));
     }
+    oracleFrustum(dense, world.pack.parameters.frustum_height_q);
     rig->press(bodies);
     ASSERT_EQ(rig->underside(), insideCells(dense, dense.underside)) << width << " x " << height << ", round " << round;
   }

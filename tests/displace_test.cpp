@@ -42,6 +42,29 @@ TEST_P(DisplaceStage, WithoutEnoughRoomEachSourceGetsItsShareRoundedDown) {
   rig->moveSoil();
   // floor(400 * 500 / 700) = 285, floor(300 * 500 / 700) = 214: one unit of room stays free.
   EXPECT_EQ(rig->height(), (std::vector<std::int32_t>{1499, 715, 786, 1000, 1000}));
+  EXPECT_EQ(rig->keptBack(), 115 + 86);
+}
+
+/// Cells 1 and 2 of seven want to give 400 and 300 away; there is room for 500 in cell 0, for 100 in cell 5, and for
+/// all in cell 6.
+void checkRounds(const BackendCase& backend_case, int rounds, const Cells& expected, int kept) {
+  ScenePack pack = groundPack(7, 1, Cells(7, 1000), 5000);
+  pack.parameters.capacity_rounds = rounds;
+  const World world(std::move(pack));
+  const auto rig = makeStageRig(backend_case, world);
+  rig->setUnderside({1500, 600, 700, 1000, 1000, 1100, kNone});
+  rig->moveSoil();
+  EXPECT_EQ(rig->height(), expected) << rounds << " rounds";
+  EXPECT_EQ(rig->keptBack(), kept) << rounds << " rounds";
+}
+
+TEST_P(DisplaceStage, WhatFoundNoRoomLooksForTheNextFreeCellInTheNextRound) {
+  // As above; then 115 and 86 go to cell 5, floor(115 * 100 / 201) = 57 and floor(86 * 100 / 201) = 42 of them; then
+  // 58 and 44 go to cell 6.
+  checkRounds(GetParam(), 1, {1499, 715, 786, 1000, 1000, 1000, 1000}, 201);
+  checkRounds(GetParam(), 2, {1499, 658, 744, 1000, 1000, 1099, 1000}, 102);
+  checkRounds(GetParam(), 3, {1499, 600, 700, 1000, 1000, 1099, 1102}, 0);
+  checkRounds(GetParam(), 16, {1499, 600, 700, 1000, 1000, 1099, 1102}, 0);
 }
 
 TEST_P(DisplaceStage, WithoutAnyFreeCellAllSoilStays) {
@@ -89,18 +112,15 @@ void checkRandomWorld(const BackendCase& backend_case, int columns, int rows, st
   pack.parameters.obstacle_threshold_q = seed % 3 == 0 ? 0 : 300;
   const World world(std::move(pack));
   const auto rig = makeStageRig(backend_case, world);
-  std::vector<std::int32_t> underside;
-  const auto covered = 1 + engine() % 9;  // of ten cells
-  for (int i = 0; i < columns * rows; ++i)
-    underside.push_back(engine() % 10 >= covered ? kNone : int(engine() % 8000) - 4000);
-  rig->setUnderside(underside);
+  coverAtRandom(*rig, seed);
   const auto before = rig->height();
   DenseWorld dense = denseCopy(*rig);
   rig->moveSoil();
   const auto overlap = oracleOverlap(dense, world.pack.parameters.obstacle_threshold_q);
-  oracleDisplace(dense, overlap, world.pack.parameters, wholeWorld(dense));
+  const OracleKept kept = oracleDisplace(dense, overlap, world.pack.parameters, wholeWorld(dense));
   const auto after = rig->height();
   ASSERT_EQ(after, insideCells(dense, dense.height)) << columns << " x " << rows << ", seed " << seed;
+  ASSERT_EQ(rig->keptBack(), kept.sum) << columns << " x " << rows << ", seed " << seed;
   ASSERT_EQ(std::accumulate(after.begin(), after.end(), std::int64_t(0)),
             std::accumulate(before.begin(), before.end(), std::int64_t(0)));
 }

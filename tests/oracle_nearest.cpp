@@ -34,12 +34,23 @@ struct Search {
 std::int32_t firstFree(const Search& search, int x, int y) {
   using Place = std::tuple<std::int64_t, std::int64_t, int, int>;
   Place best{INT64_MAX, 0, 0, 0};
+  const auto visit = [&](const OracleBox& box) {
+    const OracleBox& domain = search.domain;
+    if (box.x1 <= domain.x0 || box.x0 >= domain.x1) return;
+    for (int at_y = std::max(box.y0, domain.y0); at_y < std::min(box.y1, domain.y1); ++at_y)
+      for (int at_x = std::max(box.x0, domain.x0); at_x < std::min(box.x1, domain.x1); ++at_x) {
+        const std::int64_t dx = at_x - x, dy = at_y - y;
+        if (search.isFree(at_x, at_y))
+          best = std::min(best, Place{distanceBy(search.metric, dx, dy), dx * dx + dy * dy, at_y, at_x});
+      }
+  };
   // Ring by ring of the square around the cell, until a whole ring lies farther away than what was found.
-  for (int ring = 1; distanceBy(search.metric, ring, 0) <= std::get<0>(best); ++ring)
-    for (int dy = -ring; dy <= ring; ++dy)
-      for (int dx = -ring; dx <= ring; dx += std::abs(dy) == ring ? 1 : 2 * ring)
-        if (search.isFree(x + dx, y + dy))
-          best = std::min(best, Place{distanceBy(search.metric, dx, dy), dx * dx + dy * dy, y + dy, x + dx});
+  for (int ring = 1; distanceBy(search.metric, ring, 0) <= std::get<0>(best); ++ring) {
+    visit({x - ring, y - ring, x + ring + 1, y - ring + 1});
+    visit({x - ring, y + ring, x + ring + 1, y + ring + 1});
+    visit({x - ring, y - ring + 1, x - ring + 1, y + ring});
+    visit({x + ring, y - ring + 1, x + ring + 1, y + ring});
+  }
   return std::int32_t(search.world.at(std::get<3>(best), std::get<2>(best)));
 }
 

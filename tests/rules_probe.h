@@ -3,14 +3,17 @@
 #define SPOOR_TESTS_RULES_PROBE_H
 #include "../shaders/rules/displace.h"
 #include "../shaders/rules/exchange.h"
+#include "../shaders/rules/flood.h"
+#include "../shaders/rules/flow.h"
 #include "../shaders/rules/mix.h"
 #include "../shaders/rules/nearest.h"
 #include "../shaders/rules/penetration.h"
 #include "../shaders/rules/raster.h"
+#include "../shaders/rules/slope.h"
 
 SPOOR_RULES_BEGIN
 
-RULE_CONST kProbeCount = 11;
+RULE_CONST kProbeCount = 17;
 
 /// A number in [low, high] for draw `i` of a seed; high - low < 2^31.
 RULE int drawn(int seed, int i, int low, int high) {
@@ -72,6 +75,91 @@ RULE int probeEdge(int seed) {
   return folded(folded(folded(seed, cells.first), cells.last), cells.height);
 }
 
+/// A number whose size is drawn too: as often small as near `most`.
+RULE int drawnAmount(int seed, int i, int most) { return drawn(seed, i, 0, most) >> drawn(seed, i + 1, 0, 28); }
+
+RULE int drawnShare(int seed, int i) {
+  int share = drawn(seed, i, 0, 3);
+  return share == 0 ? 0 : (share == 1 ? 65536 : drawn(seed, i + 1, 0, 65536));
+}
+
+/// A slope threshold: small, large, or one that no slope exceeds.
+RULE int drawnThreshold(int seed, int i) {
+  return drawn(seed, i, 0, 7) == 0 ? 2147483647 : drawnAmount(seed, i + 1, 1 << 29);
+}
+
+RULE int probePenetration(int seed) {
+  int soil = drawnAmount(seed, 80, 1073741823);
+  int overlap = drawn(seed, 82, 0, soil);
+  int compacted = drawnAmount(seed, 83, kHeightLimit);
+  int compression = drawnShare(seed, 85);
+  int limit = drawnShare(seed, 87);
+  int sum = folded(seed, compactedShare(overlap, soil, compacted, compression, limit));
+  sum = folded(sum, timesQ16(overlap, compression));
+  int bedrock = drawn(seed, 89, -kHeightLimit, kHeightLimit);
+  int underside = clampInt(bedrock + drawn(seed, 90, -5000, 5000), -kHeightLimit, kNoUnderside);
+  if (drawn(seed, 91, 0, 3) == 0) underside = drawn(seed, 91, 0, 1) == 0 ? -kHeightLimit : kNoUnderside;
+  return folded(sum, seenUnderside(underside, bedrock, drawnAmount(seed, 92, 5000)));
+}
+
+RULE int probeNearest(int seed) {
+  int metric = drawn(seed, 100, 0, 2);
+  int dx = drawn(seed, 101, -16384, 16384);
+  int dy = drawn(seed, 102, -16384, 16384);
+  int sum = folded(seed, metricDistance(dx, dy, metric));
+  int row = drawn(seed, 103, 0, 16383);
+  int beneath = drawn(seed, 104, 0, 2) == 0 ? kNoFreeRow : drawn(seed, 105, 0, row);
+  int above = drawn(seed, 106, 0, 2) == 0 ? kNoFreeRow : drawn(seed, 107, row, 16383);
+  return folded(sum, nearestInColumn(row, beneath, above));
+}
+
+RULE int probeFlood(int seed) {
+  int metric = drawn(seed, 110, 0, 2);
+  int order = floodOrder(drawn(seed, 111, 0, 1 << 20), drawn(seed, 112, 0, 1 << 20));
+  int sum = folded(seed, order);
+  for (int k = 0; k < 8; ++k) {
+    int direction = floodNeighbour(order, k);
+    sum = folded(folded(sum, neighbourX(direction)), neighbourY(direction));
+  }
+  bool known = drawn(seed, 113, 0, 3) != 0;
+  return folded(sum, floodTakes(known, drawn(seed, 114, -40, 40), drawn(seed, 115, -40, 40), drawn(seed, 116, -40, 40),
+                                drawn(seed, 117, -40, 40), metric)
+                         ? 1
+                         : 0);
+}
+
+RULE int probeSpread(int seed) {
+  int overlap = 1 + drawnAmount(seed, 120, kHeightLimit - 1);
+  int count = spreadTargets(overlap, 1 + drawnAmount(seed, 122, (1 << 29) - 1), drawn(seed, 124, 1, 64));
+  int longest = 1 + drawnAmount(seed, 125, 16383);
+  int d = drawn(seed, 127, -longest, longest);
+  int sum = folded(folded(seed, count), spreadOffset(d, longest, drawn(seed, 128, 1, 64)));
+  return folded(sum, spreadPart(overlap, count, drawn(seed, 129, 0, count - 1)));
+}
+
+RULE int probeFlow(int seed) {
+  int count = drawn(seed, 130, 0, 8);
+  int ground = drawn(seed, 131, -kHeightLimit, kHeightLimit);
+  int carried = drawnAmount(seed, 132, kHeightLimit - maxInt(ground, 0));
+  int underside = clampInt(ground + carried + drawn(seed, 134, -900, 900), -kHeightLimit, kNoUnderside);
+  int sum = folded(seed, flowOffer(carried, count));
+  return folded(sum, flowRoom(drawn(seed, 135, -1, 1), ground, carried, underside, drawn(seed, 136, 0, 900)));
+}
+
+RULE int probeSlope(int seed, int height_a, int height_b) {
+  int threshold = drawnThreshold(seed, 140);
+  int roughness = drawnShare(seed, 143);
+  int soil = drawnAmount(seed, 145, 1073741823);
+  int room = drawnAmount(seed, 147, 1073741823);
+  int sum = folded(seed, exchangeThreshold(threshold));
+  sum = folded(sum, slopeGives(height_a - height_b, threshold, room) ? 1 : 0);
+  int count = drawn(seed, 149, 0, 8);
+  sum = folded(sum, slopeAmount(count * drawnAmount(seed, 150, kDifferenceMost), count, roughness, soil));
+  sum = folded(sum, slopeFlow(soil, room));
+  return folded(sum, slopeFlux(height_a, height_b, threshold, roughness, soil, drawnAmount(seed, 152, 1073741823), room,
+                               drawnAmount(seed, 154, 1073741823)));
+}
+
 /// Result number `which` (0 .. kProbeCount - 1) for a seed.
 RULE int probeRule(int which, int seed) {
   int height_a = drawn(seed, 60, -kHeightLimit, kHeightLimit);
@@ -98,6 +186,12 @@ RULE int probeRule(int which, int seed) {
                          drawn(seed, 75, 0, 2))
                ? 1
                : 0;
+  if (which == 10) return probePenetration(seed);
+  if (which == 11) return probeNearest(seed);
+  if (which == 12) return probeFlood(seed);
+  if (which == 13) return probeSpread(seed);
+  if (which == 14) return probeFlow(seed);
+  if (which == 15) return probeSlope(seed, height_a, height_b);
   int request = drawn(seed, 73, 1, kHeightLimit);
   return grantedShare(request, drawn(seed, 74, 0, kHeightLimit), wideAdd(wideFrom(request), wideMul(small, threshold)));
 }

@@ -198,7 +198,7 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   ScenePack& pack = world.pack;
   pack = noisePack(width, height, engine(), pick(-5000, 5000), 5000 + relief, oneOf({0, 40, 500, 3000, 100000}));
   pack.cell_q = oneOf({1000, 777, 500});
-  pack.parameters = randomParameters(engine());
+  pack.parameters = randomParameters(std::uint32_t(engine()));
   const int body_count = pick(1, 3);
   for (int i = 0; i < body_count; ++i) {
     const int size = (pick(0, 5) == 0 ? pick(20, 90) : pick(1, 20)) * pack.cell_q / 2;
@@ -223,7 +223,7 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
     }
     world.ticks.push_back(poses);
   }
-  world.changed = randomParameters(engine());
+  world.changed = randomParameters(std::uint32_t(engine()));
   if (pick(0, 2) == 0) world.change = std::size_t(pick(0, tick_count - 1));
   std::ostringstream text;
   text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "

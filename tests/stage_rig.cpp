@@ -1,7 +1,9 @@
 #include "tests/stage_rig.h"
 
 #include <algorithm>
+#include <random>
 
+#include "shaders/rules/mix.h"
 #include "shared/base/assert.h"
 #ifdef SPOOR_WITH_GL
 #include "tests/gl_stage_rig.h"
@@ -127,6 +129,24 @@ std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const Wo
   const Kernels& set = backend_case.baseline_kernels ? *availableKernels().front() : kernels();
   return std::make_unique<NativeStageRig>(world, backend_case.thread_count, set, backend_case.skip_settled,
                                           std::move(active));
+}
+
+void coverAtRandom(StageRig& rig, std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  const Cells height = rig.height();
+  const int width = rig.world().pack.width_cells;
+  const int block = engine() % 2 == 0 ? 1 : 2 + int(engine() % 20);  // cells a side
+  const std::uint32_t covered = 1 + std::uint32_t(engine() % 9);     // of ten blocks
+  Cells underside, compacted;
+  for (int i = 0; i < int(height.size()); ++i) {
+    const rules::uint key = rules::mix32(rules::cellKey(i % width / block, i / width / block, 7) ^ seed);
+    const bool roof = engine() % 12 == 0;
+    const std::int32_t above = height[std::size_t(i)] + (roof ? int(engine() % 600) : int(engine() % 4000) - 3900);
+    underside.push_back(roof || key % 10 < covered ? above : rules::kNoUnderside);
+    compacted.push_back(engine() % 3 == 0 ? int(engine() % 900) : 0);
+  }
+  rig.setUnderside(underside);
+  if (rig.world().pack.parameters.compression_q16 > 0) rig.setCompacted(compacted);
 }
 
 DenseWorld denseCopy(const StageRig& rig) {

@@ -113,6 +113,10 @@ class NativeStageRig final : public StageRig {
 std::unique_ptr<StageRig> makeStageRig(const BackendCase& backend_case, const World& world,
                                        std::vector<TileCoordinate> active = {});
 
+/// Puts random undersides over some of a rig's cells: over single ones, or over blocks of them, some of them roofs with
+/// little room; and where it compacts some compacted soil.
+void coverAtRandom(StageRig& rig, std::uint32_t seed);
+
 /// A dense world with the planes that a rig holds, all cells active.
 DenseWorld denseCopy(const StageRig& rig);
 

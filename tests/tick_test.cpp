@@ -166,6 +166,50 @@ TEST_P(WholeTick, ABladeThinnerThanACellPressesWhereverItIs) {
   }
 }
 
+TEST_P(WholeTick, CompactedSoilIsOnTheLedgerAndOnlyTilesThatHaveSomeHoldAPlaneOfIt) {
+  ScenePack pack = flatPack(130, 20);
+  pack.parameters.compression_q16 = kOneQ16 / 4;
+  pack.parameters.active_margin_cells = 40;
+  addBody(pack, boxMesh(3000, 3000, 3000), 60500, 10500, 400);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulateOn(GetParam());
+  ASSERT_TRUE(simulation.step(simulation.state().poses));
+  const TileStore& tiles = simulation.state().tiles;
+  ASSERT_EQ(tiles.size(), 2u) << "the margin reaches into the second tile";
+  EXPECT_EQ(tiles.find({1, 0})->compacted(), nullptr);
+  const PlaneCells* compacted = tiles.find({0, 0})->compacted();
+  ASSERT_NE(compacted, nullptr);
+  EXPECT_EQ((*compacted)[10 * 64 + 60], 100);
+  const Ledger& ledger = simulation.state().ledger;
+  EXPECT_GE(ledger.compacted, 9 * 100);
+  EXPECT_EQ(ledger.compacted % 100, 0);
+  EXPECT_EQ(ledger.ground, -ledger.compacted) << "level ground at height 0 has lost what was pressed together";
+  EXPECT_EQ(ledger.error(), 0);
+  EXPECT_TRUE(recount(simulation.state()));
+  std::vector<Pose> poses = initialState(world.id, world.base).poses;
+  std::vector<std::vector<Pose>> ticks(1, poses);
+  for (int tick = 0; tick < 6; ++tick) {
+    poses[0] = moved(poses[0], 1300, 0, tick == 2 ? 900 : -100);
+    ticks.push_back(poses);
+  }
+  checkTicks(GetParam(), world, ticks);
+}
+
+TEST_P(WholeTick, WithoutActiveAreasTheWholeWorldIsOneDomain) {
+  ScenePack pack = flatPack(140, 70);
+  pack.parameters.active_areas = 0;
+  addBody(pack, boxMesh(3000, 3000, 3000), 20500, 10500, 400);
+  addBody(pack, boxMesh(3000, 3000, 3000), 100500, 50500, 400);
+  const World world(std::move(pack));
+  Simulation simulation = world.simulateOn(GetParam());
+  for (int tick = 0; tick < 2; ++tick) {
+    const auto result = simulation.step(simulation.state().poses);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->effect.active_cells, 3 * 2 * rules::kTileCells);
+    EXPECT_EQ(result->effect.domain_cells, 140 * 70);
+  }
+}
+
 std::string batchName(const ::testing::TestParamInfo<Batch>& info) {
   return info.param.backend_case.name + "Batch" + std::to_string(info.param.number);
 }

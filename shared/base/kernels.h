@@ -20,6 +20,8 @@ struct Kernels {
   std::int32_t (*highest)(const std::int32_t* cells, int n);
   /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
   void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
+  /// The same stage: takes undersides away that lie too high above bedrock to be seen (rules/penetration.h).
+  void (*hideAbove)(std::int32_t* underside, const std::int32_t* bedrock, int n, int frustum_height);
   /// Stage penetration: overlap of a row of cells; returns how many are penetrating.
   int (*overlap)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
                  int obstacle_threshold, std::int32_t* overlap);

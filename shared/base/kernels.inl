@@ -67,6 +67,10 @@ void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int s
         rules::minInt(underside[i], rules::triangleHeightAlong(first, step, step_fraction, i, lowest, highest));
 }
 
+void hideAbove(int32_t* __restrict underside, const int32_t* bedrock, int n, int frustum_height) {
+  for (int i = 0; i < n; ++i) underside[i] = rules::seenUnderside(underside[i], bedrock[i], frustum_height);
+}
+
 int overlap(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
             int32_t* __restrict out) {
   int count = 0;
@@ -168,6 +172,7 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            lowest,
                                                            highest,
                                                            lowerAlong,
+                                                           hideAbove,
                                                            overlap,
                                                            carryFree,
                                                            mergeFree,

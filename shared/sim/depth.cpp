@@ -173,12 +173,17 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
   // Once all are drawn: a segment may lie under several domains.
   context.pool.forEach(int(context.area.runs.size()), [&](int i, int) {
     const Run& run = context.area.runs[i];
-    for (int row = 0; row < rules::kTileSize; ++row)
+    const std::int32_t frustum_height = context.parameters.frustum_height_q;
+    for (int row = 0; row < rules::kTileSize; ++row) {
+      if (frustum_height > 0)
+        context.kernels.hideAbove(context.area.underside.data() + run.rowOffset(row),
+                                  context.area.bedrock.data() + run.rowOffset(row), run.width(), frustum_height);
       for (int tile = 0; tile < run.tile_count; ++tile)
         context.area.lowest_underside[run.segment_offset + std::size_t(row * run.tile_count + tile)] =
             context.kernels.lowest(
                 context.area.underside.data() + run.rowOffset(row) + std::size_t(tile * rules::kTileSize),
                 rules::kTileSize);
+    }
   });
 }
 

@@ -102,9 +102,8 @@ class NativeBackend final : public Backend {
       effect.bytes_moved += cells * kPenetrationBytes;
       {
         StageTimer timer(effect.stage_ms, Stage::penetration);
-        runPenetration(context, domain);
+        effect.penetrating_cells += runPenetration(context, domain);
       }
-      effect.penetrating_cells += domain.penetrating_count;
       if (domain.penetrating_count == 0) continue;
       effect.bytes_moved += cells * kNearestBytes + domain.penetrating_count * kDisplaceBytes;
       {
