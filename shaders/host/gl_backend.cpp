@@ -315,7 +315,7 @@ class GlBackend final : public Backend {
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 
-  static constexpr std::int64_t kHeadBytes = offsetof(rules::TickHead, lists);
+  static constexpr std::int64_t kHeadBytes = sizeof(rules::TickHead);
 
   std::unique_ptr<HeadlessContext> context_;
   GlLimits limits_;

@@ -37,8 +37,9 @@ void GlStages::penetration(const TickTables& tick, int i) {
   overlap_.bind(rules::kBindOverlap);
   free_mask_.bind(rules::kBindFreeMask);
   row_chunks_.bind(rules::kBindRowChunks);
+  bindTable(rules::kBindRowFlags, tick.row_flags);
   if (tick.parameters.compression_q16 > 0) compacted_.bind(rules::kBindCompacted);
-  use(*chosen_.penetration, i);
+  use(*chosen_.penetration, step.first_list);
   setUniform(2, leastToPlace(tick.parameters));
   dispatch(step.domain_blocks);
 }
@@ -53,12 +54,13 @@ void GlStages::nearest(const TickTables& tick, int i) {
 }
 
 void GlStages::search(const TickTables& tick, int i) {
-  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
+  const int list = tick.sub_steps[std::size_t(i)].first_list;
+  const std::int64_t rows = listOffset(tick, list, offsetof(rules::RoundLists, rows));
   target_.bind(rules::kBindTarget);
   nearest_row_.bind(rules::kBindNearestRow);
-  use(*chosen_.nearest_columns, i);
+  use(*chosen_.nearest_columns, list);
   dispatchListed(rows);
-  use(*chosen_.nearest_search, i);
+  use(*chosen_.nearest_search, list);
   setUniform(4, leastToPlace(tick.parameters));
   int found_stride = 0;
   for (const int stride : {64, 8, 1}) {
@@ -78,10 +80,10 @@ void GlStages::flood(const TickTables& tick, int i, std::int64_t arguments) {
   const GrowingBuffer* next = known == &flood_ ? &target_ : &flood_;
   bindTable(rules::kBindBlocks, step.domain_blocks.blocks);
   known->bind(rules::kBindNextKnown);
-  use(*chosen_.flood_begin, i);
+  use(*chosen_.flood_begin);
   setUniform(0, step.domain_blocks.count);
   dispatchListed(arguments);
-  use(*chosen_.flood_pass, i);
+  use(*chosen_.flood_pass);
   setUniform(0, step.domain_blocks.count);
   for (std::size_t pass = 0; pass < steps.size(); ++pass) {
     known->bind(rules::kBindKnown);
@@ -95,52 +97,34 @@ void GlStages::flood(const TickTables& tick, int i, std::int64_t arguments) {
 
 void GlStages::displace(const TickTables& tick, int i) {
   if (tick.sub_steps[std::size_t(i)].domain_blocks.count == 0) return;
-  if (tick.parameters.displacement == Displacement::iterative)
-    flow(tick, i);
-  else
-    displaceInRounds(tick, i);
+  if (tick.parameters.displacement == Displacement::iterative) return flow(tick, i);
+  for (int round = 0; round < tick.parameters.capacity_rounds; ++round) displaceRound(tick, i, round);
 }
 
-void GlStages::displaceInRounds(const TickTables& tick, int i) {
+/// Rounds but the first are empty dispatches where no soil is left to them.
+void GlStages::displaceRound(const TickTables& tick, int i, int round) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
+  const int list = step.first_list + round;
+  const bool flooded = tick.parameters.nearest != NearestSearch::exact;
+  if (round > 0 && flooded) flood(tick, i, listOffset(tick, list, offsetof(rules::RoundLists, floods)));
+  const std::int64_t rows = listOffset(tick, list, offsetof(rules::RoundLists, rows));
   target_.bind(rules::kBindTarget);
+  nearest_row_.bind(rules::kBindNearestRow);
   requested_low_.bind(rules::kBindRequestedLow);
   requested_high_.bind(rules::kBindRequestedHigh);
+  row_chunks_.bind(rules::kBindRowChunks);
   receivers_.bind(rules::kBindReceivers);
-  use(*chosen_.displace_request, i);
+  use(round > 0 && !flooded ? *chosen_.displace_request_again : *chosen_.displace_request, list);
+  setUniform(2, round);
   dispatchListed(rows);
   granted_.bind(rules::kBindGranted);
-  nearest_row_.bind(rules::kBindLeft);  // which nobody reads any more
-  use(*chosen_.displace_take, i);
+  use(*chosen_.displace_take, list);
+  setUniform(2, round + 1 == tick.parameters.capacity_rounds ? 1 : 0);
   dispatchListed(rows);
   receivers_.bind(rules::kBindRowChunks);
-  free_mask_.bind(rules::kBindFreeMask);
-  use(*chosen_.displace_give, i);
+  use(*chosen_.displace_give, list);
   setUniform(2, step.first_step);
-  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, receivers)));
-  // All in one dispatch where a domain's group finds targets itself.
-  const int later_rounds = tick.parameters.capacity_rounds - 1;
-  const bool by_flood = tick.parameters.nearest != NearestSearch::exact;
-  if (!by_flood || later_rounds == 0) laterRounds(tick, i, later_rounds, true);
-  for (int round = 0; by_flood && round < later_rounds; ++round) {
-    flood(tick, i, listOffset(tick, i, offsetof(rules::SubStepLists, floods)));
-    laterRounds(tick, i, 1, round + 1 == later_rounds);
-  }
-}
-
-void GlStages::laterRounds(const TickTables& tick, int i, int count, bool last) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  nearest_row_.bind(rules::kBindLeft);
-  target_.bind(rules::kBindTarget);
-  requested_low_.bind(rules::kBindRequestedLow);
-  requested_high_.bind(rules::kBindRequestedHigh);
-  use(*chosen_.displace_rounds, i);
-  setUniform(0, step.domain_count);
-  setUniform(2, step.first_step);
-  setUniform(3, count);
-  setUniform(4, last ? 1 : 0);
-  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, rounds)));
+  dispatchListed(listOffset(tick, list, offsetof(rules::RoundLists, receivers)));
 }
 
 void GlStages::flow(const TickTables& tick, int i) {
@@ -152,19 +136,19 @@ void GlStages::flow(const TickTables& tick, int i) {
   room_.bind(rules::kBindRoom);
   int from = 0;
   carried_[from].bind(rules::kBindCarried);
-  use(*chosen_.flow_begin, i);
+  use(*chosen_.flow_begin);
   dispatch(step.domain_blocks);
   for (int iteration = 0; iteration < tick.parameters.displace_iterations; ++iteration) {
     carried_[from].bind(rules::kBindCarried);
     carried_[1 - from].bind(rules::kBindNextCarried);
-    use(*chosen_.flow_offer, i);
+    use(*chosen_.flow_offer);
     dispatch(step.domain_blocks);
-    use(*chosen_.flow_move, i);
+    use(*chosen_.flow_move);
     dispatch(step.domain_blocks);
     from = 1 - from;
   }
   carried_[from].bind(rules::kBindCarried);
-  use(*chosen_.flow_end, i);
+  use(*chosen_.flow_end);
   setUniform(2, step.first_step);
   dispatch(step.domain_blocks);
 }

@@ -61,12 +61,13 @@ void GlPrograms::chooseDisplacement(const Parameters& parameters, TickPrograms& 
     chosen.flow_end = get("flow_end");
     return;
   }
-  const std::string spread = defined(parameters.displacement == Displacement::spread), search = defined(exact);
-  chosen.displace_request = get("displace_request", {{"SPOOR_SPREAD", spread}});
+  const std::string spread = defined(parameters.displacement == Displacement::spread);
+  chosen.displace_request = get("displace_request", {{"SPOOR_SPREAD", spread}, {"SPOOR_SEARCH", "0"}});
+  if (exact)
+    chosen.displace_request_again =
+        get("displace_request", {{"SPOOR_SPREAD", spread}, {"SPOOR_SEARCH", "1"}, {"SPOOR_METRIC", metric}});
   chosen.displace_take = get("displace_take", {{"SPOOR_SPREAD", spread}});
-  chosen.displace_give = get("displace_give", {{"SPOOR_SEARCH", search}});
-  chosen.displace_rounds = get(
-      "displace_rounds", {{"SPOOR_SPREAD", spread}, {"SPOOR_SEARCH", search}, {"SPOOR_METRIC", metric}}, kLargeGroup);
+  chosen.displace_give = get("displace_give");
 }
 
 void GlPrograms::chooseSlopes(SlopeRule rule, TickPrograms& chosen) {

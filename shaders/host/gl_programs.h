@@ -23,8 +23,8 @@ struct TickPrograms {
                   *depth_large = nullptr, *penetration = nullptr, *hash = nullptr;
   const GlProgram *nearest_columns = nullptr, *nearest_search = nullptr;
   const GlProgram *flood_begin = nullptr, *flood_pass = nullptr;
-  const GlProgram *displace_request = nullptr, *displace_take = nullptr, *displace_give = nullptr,
-                  *displace_rounds = nullptr;
+  const GlProgram *displace_request = nullptr, *displace_request_again = nullptr, *displace_take = nullptr,
+                  *displace_give = nullptr;  // the second in later rounds, with its own search
   const GlProgram *flow_begin = nullptr, *flow_offer = nullptr, *flow_move = nullptr, *flow_end = nullptr;
   // Of each matching; the second where bodies may stand over active tiles.
   std::array<std::array<const GlProgram*, 2>, rules::kMatchingCount> exchange{};

@@ -13,10 +13,10 @@ namespace {
 constexpr int kCellBytes = sizeof(std::int32_t);
 }  // namespace
 
-/// Where the arguments of a list that the GPU makes lie; `list` is its offset in SubStepLists.
-std::int64_t GlStages::listOffset(const TickTables& tick, int sub_step, std::size_t list) {
+/// Where the arguments of a list that the GPU makes lie; `member` is its offset in RoundLists.
+std::int64_t GlStages::listOffset(const TickTables& tick, int list, std::size_t member) {
   return tick.head.offset +
-         std::int64_t(offsetof(rules::TickHead, lists) + sub_step * sizeof(rules::SubStepLists) + list);
+         std::int64_t(sizeof(rules::TickHead) + std::size_t(list) * sizeof(rules::RoundLists) + member);
 }
 
 GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled)
@@ -128,9 +128,9 @@ Status GlStages::reserve(const TickTables& tick) {
   return {};
 }
 
-void GlStages::use(const GlProgram& program, int sub_step) {
+void GlStages::use(const GlProgram& program, int list) {
   glUseProgram(program.name());
-  setUniform(1, sub_step);
+  setUniform(1, list);
 }
 
 void GlStages::bindTable(int binding, const TableRange& range) const {
@@ -177,11 +177,11 @@ void GlStages::gather(const TickTables& tick, const TilePool& pool) {
 void GlStages::depth(const TickTables& tick, int i) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   bindCells(tick);
-  use(*chosen_.cover, i);
+  use(*chosen_.cover);
   setUniform(2, step.first_step);
   dispatch(step.cover);
   if (step.primitives.count > 0) drawBodies(tick, i);
-  use(*chosen_.ceiling, i);
+  use(*chosen_.ceiling);
   setUniform(2, step.first_step);
   setUniform(3, tick.parameters.frustum_height_q);
   dispatch(step.cover);
@@ -196,12 +196,12 @@ void GlStages::drawBodies(const TickTables& tick, int i) {
   indices_.bind(rules::kBindIndices);
   points_.bind(rules::kBindPoints);
   large_.bind(rules::kBindLarge);
-  use(*chosen_.place, i);
+  use(*chosen_.place);
   dispatch(step.place);
-  use(*chosen_.depth, i);
+  use(*chosen_.depth, step.first_list);
   dispatch(step.primitives);
-  use(*chosen_.depth_large, i);
-  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, large)));
+  use(*chosen_.depth_large, step.first_list);
+  dispatchListed(listOffset(tick, step.first_list, offsetof(rules::RoundLists, large)));
 }
 
 void GlStages::hash(const TickTables& tick, const TilePool& pool) {

@@ -54,8 +54,8 @@ class GlStages {
  private:
   Status reserve(const TickTables& tick);
   static void setUniform(int location, int value) { glUniform1i(location, value); }
-  static std::int64_t listOffset(const TickTables& tick, int sub_step, std::size_t list);
-  void use(const GlProgram& program, int sub_step = 0);
+  static std::int64_t listOffset(const TickTables& tick, int list, std::size_t member);
+  void use(const GlProgram& program, int list = 0);
   void dispatch(const GroupList& list);
   void dispatchListed(std::int64_t arguments);
   void bindTable(int binding, const TableRange& range) const;
@@ -63,8 +63,7 @@ class GlStages {
   void drawBodies(const TickTables& tick, int i);
   void search(const TickTables& tick, int i);
   void flood(const TickTables& tick, int i, std::int64_t arguments);
-  void displaceInRounds(const TickTables& tick, int i);
-  void laterRounds(const TickTables& tick, int i, int count, bool last);
+  void displaceRound(const TickTables& tick, int i, int round);
   void flow(const TickTables& tick, int i);
   void sweepPlain(const TickTables& tick, int first_step);
   void sweepFused(const TickTables& tick, int first_step);

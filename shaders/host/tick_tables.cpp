@@ -14,9 +14,8 @@ constexpr int kSize = rules::kTileSize;
 // As GLSL's std430 lays them out: ints, one after the other.
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
-static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 80);
-static_assert(sizeof(rules::TickHead) == 56 + rules::kSubStepMost * sizeof(rules::SubStepLists));
-static_assert(rules::kSubStepMost == kSubStepLimit);
+static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::RoundLists) == 64);
+static_assert(sizeof(rules::TickHead) == 56);
 
 /// Collects tables as bytes.
 class TableWriter {
@@ -152,9 +151,8 @@ class TableMaker {
       step.mask_words += std::int64_t(entry.width) * groupsFor(entry.rows, rules::kMaskRows);
       step.row_chunks += std::int64_t(entry.rows) * groupsFor(entry.width, shape_.group);
       step.longest_side = std::max({step.longest_side, entry.width, entry.rows});
-      row_count_ += entry.rows + 1;  // and the number of cells that soil was left in
+      row_count_ += entry.rows;
     }
-    step.domain_count = int(domains.size());
     step.domains = writer_.put(domains);
     step.domain_tiles = writer_.put(domain_tiles);
     step.domain_blocks = writer_.dispatch(blocks, shape_);
@@ -225,8 +223,9 @@ class TableMaker {
     return {x, 0, 1, (groups + x - 1) / x};
   }
 
-  /// The head comes last: it ends in the row flags of all sub-steps.
+  /// The head comes last: it ends in the lists of all sub-steps' rounds.
   void putHead() {
+    tables_.row_flags = writer_.put(std::vector<std::int32_t>(std::size_t(row_count_)));
     rules::TickHead head{};
     head.tile_count = count_;
     head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
@@ -238,12 +237,15 @@ class TableMaker {
     head.spread_cells = plan_.parameters.spread_cells;
     head.highest = -rules::kHeightLimit;
     const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
-    for (std::size_t i = 0; i < tables_.sub_steps.size(); ++i) {
-      const SubStepTables& step = tables_.sub_steps[i];
-      head.lists[i] = {empty, empty, empty, waiting(step.domain_count), waiting(step.domain_blocks.count)};
+    std::vector<rules::RoundLists> lists;
+    for (SubStepTables& step : tables_.sub_steps) {
+      step.first_list = int(lists.size());
+      for (int round = 0; round < plan_.parameters.capacity_rounds; ++round)
+        lists.push_back({empty, empty, empty, waiting(step.domain_blocks.count)});
     }
-    std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(std::max(row_count_, 1)) * sizeof(std::int32_t));
+    std::vector<std::uint8_t> bytes(sizeof(head) + std::max<std::size_t>(lists.size(), 1) * sizeof(rules::RoundLists));
     std::memcpy(bytes.data(), &head, sizeof(head));
+    std::memcpy(bytes.data() + sizeof(head), lists.data(), lists.size() * sizeof(rules::RoundLists));
     tables_.head = writer_.put(bytes);
   }
 

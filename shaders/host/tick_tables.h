@@ -44,9 +44,9 @@ struct GroupList {
 
 struct SubStepTables {
   TableRange bodies, domains, domain_tiles;
+  int first_list = 0;  // of RoundLists; one for each round
   GroupList cover, place, primitives, domain_blocks;
   std::int64_t point_count = 0, primitive_count = 0, domain_cells = 0, mask_words = 0, row_chunks = 0;
-  int domain_count = 0;
   int longest_side = 0;  // of a domain, in cells
   int first_step = 0;    // of the relaxation
   int sweep_count = 0;
@@ -56,7 +56,8 @@ struct SubStepTables {
 struct TickTables {
   std::vector<std::uint8_t> bytes;
   Parameters parameters;
-  TableRange head;   // TickHead and row flags
+  TableRange head;  // TickHead and RoundLists
+  TableRange row_flags;
   TableRange tiles;  // TileEntry [active tiles]
   GroupList gather, exchange, sweep, slope, hash;
   std::vector<SubStepTables> sub_steps;

@@ -1,18 +1,12 @@
 // Stage displace, direct and spread: where a source's overlap goes, and what its targets have room for.
-// SPOOR_SPREAD is 1 for spread; SPOOR_COHERENT is how cells are kept in step within a group, where that is needed.
+// SPOOR_SPREAD is 1 for spread.
 #ifndef SPOOR_SIM_DISPLACE_GLSL
 #define SPOOR_SIM_DISPLACE_GLSL
 #include "../rules/displace.h"
-#include "../rules/exchange.h"
 #include "domains.glsl"
 #include "tick.glsl"
-#ifndef SPOOR_COHERENT
-#define SPOOR_COHERENT
-#endif
 
-layout(std430, binding = kBindOverlap) SPOOR_COHERENT buffer Overlap { int overlap[]; };
-layout(std430, binding = kBindRequestedLow) SPOOR_COHERENT buffer RequestedLow { uint requested_low[]; };
-layout(std430, binding = kBindRequestedHigh) SPOOR_COHERENT buffer RequestedHigh { uint requested_high[]; };
+layout(std430, binding = kBindOverlap) buffer Overlap { int overlap[]; };
 
 /// A penetrating cell, and the cells of its domain's box that it wants to push soil into.
 struct Source {
@@ -63,11 +57,6 @@ Source sourceAt(DomainEntry domain, int cell, int target_cell) {
   source.parts = max(free, 1);
 #endif
   return source;
-}
-
-void request(int at, int amount) {
-  uint before = atomicAdd(requested_low[at], uint(amount));
-  if (before + uint(amount) < before) atomicAdd(requested_high[at], 1u);
 }
 
 #endif

@@ -10,7 +10,7 @@ layout(std430, binding = kBindNearestRow) writeonly buffer NearestRow { int near
 #include "free_rows.glsl"
 
 void main() {
-  if (groupIndex() >= tick.lists[sub_step].rows.used) return;
+  if (groupIndex() >= lists[list].rows.used) return;
   RowChunk chunk = row_chunks[groupIndex()];
   DomainEntry domain = domains[chunk.domain];
   int column = chunk.chunk * kGroup + lane();

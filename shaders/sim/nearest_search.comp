@@ -41,7 +41,7 @@ void search(int low, int high) {
 }
 
 void main() {
-  if (groupIndex() >= tick.lists[sub_step].rows.used) return;
+  if (groupIndex() >= lists[list].rows.used) return;
   RowChunk chunk = row_chunks[groupIndex()];
   DomainEntry domain = domains[chunk.domain];
   row = chunk.row;

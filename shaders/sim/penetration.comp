@@ -20,6 +20,7 @@ layout(std430, binding = kBindUnderside) readonly buffer Underside { int undersi
 layout(std430, binding = kBindOverlap) writeonly buffer Overlap { int overlap[]; };
 layout(std430, binding = kBindFreeMask) writeonly buffer FreeMask { uint free_mask[]; };
 layout(std430, binding = kBindRowChunks) writeonly buffer RowChunks { RowChunk row_chunks[]; };
+layout(std430, binding = kBindRowFlags) buffer RowFlags { int row_flags[]; };
 layout(location = 2) uniform int least_listed;  // 1; kObstacle where obstacles need a target too
 
 shared int penetrating_in_group;
@@ -29,8 +30,8 @@ void listRow(int domain, int row) {
   if ((row_flags[flag] & kRowPenetrates) != 0 || (atomicOr(row_flags[flag], kRowPenetrates) & kRowPenetrates) != 0)
     return;
   int chunks = (domains[domain].width + kGroup - 1) / kGroup;
-  int first = atomicAdd(tick.lists[sub_step].rows.used, chunks);
-  atomicMax(tick.lists[sub_step].rows.y, (first + chunks + kDispatchColumns - 1) / kDispatchColumns);
+  int first = atomicAdd(lists[list].rows.used, chunks);
+  atomicMax(lists[list].rows.y, (first + chunks + kDispatchColumns - 1) / kDispatchColumns);
   for (int i = 0; i < chunks; ++i) row_chunks[first + i] = RowChunk(domain, row, i);
 }
 

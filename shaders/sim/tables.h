@@ -31,9 +31,8 @@ RULE_CONST kBindIndices = 12;      // depth: int, the triangles of all meshes (3
 RULE_CONST kBindLarge = 13;        // depth: ivec2 (body, primitive): those worth groups of their own
 RULE_CONST kBindFreeMask = 13;     // nearest: uint [words of the domains]: a column's 32 cells, bit set: free
 RULE_CONST kBindNearestRow = 14;   // nearest: int [domain cells]: of the same column, in rows of the box, or kNoFreeRow
-RULE_CONST kBindReceivers = 13;    // displace: RowChunk: rows that hold targets
-RULE_CONST kBindLeft = 6;          // displace: int [domain cells]: cells of the domain's box that soil was left in,
-                                   // from the front; in later rounds their targets, from the back
+RULE_CONST kBindRowFlags = 1;      // penetration, displace: int [rows of all domains of all sub-steps]
+RULE_CONST kBindReceivers = 6;     // displace: RowChunk: rows that hold targets
 RULE_CONST kBindKnown = 11;        // nearest by flooding: int [domain cells]: as kBindTarget, before a pass
 RULE_CONST kBindNextKnown = 12;    // the same after it
 RULE_CONST kBindNearer = 11;       // iterative: int [domain cells]: bit d: neighbour d is nearer to a free cell
@@ -51,7 +50,6 @@ RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tile
 RULE_CONST kBindPoolCompacted = 13;  // gather, hash: as heights
 RULE_CONST kBindCompacted = 14;  // gather, penetration, hash: int [active tiles * kTileCells], where the tick compacts
 
-RULE_CONST kSubStepMost = 32;
 RULE_CONST kGatherQuads = 4;    // cells of a tile, in fours, that a lane gathers
 RULE_CONST kBlocksPerSide = 2;  // of a tile, in a fused sweep
 RULE_CONST kSlabRows = 8;       // what relax skips where nothing has changed
@@ -63,7 +61,7 @@ RULE_CONST kDispatchRowsMost = 65535;  // GL guarantees no more
 RULE_CONST kDispatchColumns = 256;     // groups per row of a dispatch whose size the GPU finds
 
 RULE_CONST kRowPenetrates = 1;
-RULE_CONST kRowReceives = 2;
+RULE_CONST kRowReceives = 2;  // in the first round; in round i that bit << i
 
 /// Size of an indirect dispatch, and how many of its groups have work.
 struct GroupCount {
@@ -73,17 +71,15 @@ struct GroupCount {
   int used;
 };
 
-/// Lists that the GPU makes in a sub-step, in no particular order.
-struct SubStepLists {
-  GroupCount large;      // kBindLarge
-  GroupCount rows;       // kBindRowChunks
+/// Lists that the GPU makes in a round of displacement, in no particular order.
+struct RoundLists {
+  GroupCount large;      // kBindLarge; in the first round only, as depth comes before it
+  GroupCount rows;       // kBindRowChunks; in later rounds the same rows, or none where no soil is left
   GroupCount receivers;  // kBindReceivers
-  // Sizes of dispatches that the host knows; y is 0 until there is anything to do, then `used`.
-  GroupCount rounds;  // all but the first, a group for each domain
-  GroupCount floods;  // of these rounds, over the blocks of the domains
+  GroupCount floods;     // the blocks of the domains; y is 0 until soil is left, then `used`
 };
 
-/// The head of the tick's table; row flags of all sub-steps' domains follow it (DomainEntry::first_row).
+/// The head of the tick's table; RoundLists of all rounds of all sub-steps follow it.
 struct TickHead {
   int tile_count;
   int obstacle_threshold;
@@ -100,7 +96,6 @@ struct TickHead {
   int staged_cells;
   uint kept_back_low;  // soil that found no room, of all sub-steps: 64 bits in two words
   uint kept_back_high;
-  SubStepLists lists[kSubStepMost];
 };
 
 /// An active tile.
@@ -164,7 +159,7 @@ struct DomainEntry {
   int rows;
   int first_cell;  // in the planes of domains
   int first_word;  // in kBindFreeMask; row-major words of the box
-  int first_row;   // row flags; after those of its rows the number of kBindLeft
+  int first_row;   // in kBindRowFlags
   int first_tile;  // in kBindDomainTiles
   int tile_x0;     // the domain's tiles, in tiles
   int tile_y0;
