@@ -86,6 +86,7 @@ TEST_P(DisplaceStage, DownToBedrockAndNoDeeper) {
 TEST_P(DisplaceStage, AGapOfTheObstacleThresholdTakesNothing) {
   ScenePack pack = groundPack(5, 1, {1000, 1000, 1000, 1000, 1000}, 5000);
   pack.parameters.obstacle_threshold_q = 80;
+  pack.parameters.capacity_rounds = 1;
   const World world(std::move(pack));
   const auto rig = makeStageRig(GetParam(), world);
   rig->setUnderside({kNone, 1080, 900, 1081, kNone});

@@ -5,6 +5,23 @@
 
 namespace spoor {
 
+/// A row of cells as the slope rules see them (rules/slope.h). Pointers are to its first cell; kHalo more cells lie
+/// before it and behind its last.
+struct SlopeRow {
+  static constexpr int kHalo = 2;
+  static constexpr int kMostCells = 256;
+
+  std::int32_t* height;
+  std::int32_t* room;    // roomBeneath
+  std::int32_t* soil;    // height - bedrock
+  std::int32_t* amount;  // slopeAmount
+};
+
+/// The slope rules' numbers of a tick (Parameters).
+struct SlopeNumbers {
+  int threshold, diagonal_threshold, roughness;
+};
+
 /// The inner loops over rows of cells, compiled once per instruction set from kernels.inl; every set gives the same
 /// bits. Pointers are to int32 cells; `n` counts cells and may be 0. Thread-safe.
 struct Kernels {
@@ -41,6 +58,23 @@ struct Kernels {
   bool (*exchangeWithin)(std::int32_t* cells, const std::int32_t* bedrock, int pair_count, int threshold);
   bool (*exchangeWithinBeneath)(std::int32_t* cells, const std::int32_t* bedrock, const std::int32_t* underside,
                                 int pair_count, int threshold, int obstacle_threshold);
+  /// Stage relax, the slope rules: n cells as they see them, all but the amount.
+  void (*slopeCells)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
+                     int obstacle_threshold, const SlopeRow& out);
+  /// Amounts of the cells begin .. end - 1 of a row, out of it and the rows above and below; false: all are 0.
+  bool (*slopeAmounts)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end,
+                       const SlopeNumbers& numbers);
+  /// Flows between a row and the one below. carry[i]: in, what came from the row above; out, what goes to the row
+  /// below. out[i]: heights after all flows of n <= kMostCells cells. Of the average rule (amounts are known), and
+  /// flux.
+  void (*averageFlows)(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers,
+                       std::int32_t* carry, std::int32_t* out);
+  void (*fluxFlows)(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, std::int32_t* carry,
+                    std::int32_t* out);
+  /// The average rule as a scattering: what n cells of a row lose and others gain by it. change: of the rows above, of
+  /// this one and below; cells -1 .. n of each.
+  void (*scatterFlows)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int n,
+                       const SlopeNumbers& numbers, std::int32_t* const change[3]);
 };
 
 /// The sets this processor runs, slowest first; "baseline" is always there.

@@ -6,6 +6,7 @@
 #include "shaders/rules/nearest.h"
 #include "shaders/rules/penetration.h"
 #include "shaders/rules/raster.h"
+#include "shaders/rules/slope.h"
 #include "shared/base/kernels.h"
 
 namespace spoor {
@@ -157,6 +158,110 @@ bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, co
   });
 }
 
+void slopeCells(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
+                const SlopeRow& out) {
+  int32_t* __restrict out_height = out.height;
+  int32_t* __restrict out_room = out.room;
+  int32_t* __restrict out_soil = out.soil;
+  for (int i = 0; i < n; ++i) {
+    out_height[i] = height[i];
+    out_room[i] = rules::roomBeneath(height[i], underside[i], obstacle_threshold);
+    out_soil[i] = height[i] - bedrock[i];
+  }
+}
+
+bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end,
+                  const SlopeNumbers& numbers) {
+  constexpr int kMost = SlopeRow::kMostCells + 2 * SlopeRow::kHalo;
+  const int n = end - begin, threshold = numbers.threshold;
+  const int32_t* const height[3] = {above.height + begin, row.height + begin, below.height + begin};
+  const int32_t* const room[3] = {above.room + begin, row.room + begin, below.room + begin};
+  const int32_t* soil = row.soil + begin;
+  int32_t* __restrict amount = row.amount + begin;
+  int32_t drops[kMost], counts[kMost];
+  int any = 0;
+  for (int i = 0; i < n; ++i) {
+    int sum = 0, count = 0;
+    for (int d = 0; d < 8; ++d) {
+      const int j = i + rules::neighbourX(d), line = 1 + rules::neighbourY(d);
+      const int drop = height[1][i] - height[line][j];
+      const bool gives = rules::slopeGives(drop, threshold, room[line][j]);
+      sum += gives ? rules::minInt(drop, rules::kDifferenceMost) : 0;
+      count += gives ? 1 : 0;
+    }
+    drops[i] = sum;
+    counts[i] = count;
+    any |= count;
+  }
+  if (any == 0) {
+    for (int i = 0; i < n; ++i) amount[i] = 0;
+    return false;
+  }
+  for (int i = 0; i < n; ++i) amount[i] = rules::slopeAmount(drops[i], counts[i], numbers.roughness, soil[i]);
+  return true;
+}
+
+// Every edge once: those along the row, and those down from it.
+template <typename SideFlow, typename DiagonalFlow>
+inline void flowsOfRow(const SlopeRow& row, const SlopeRow& below, int n, int32_t* __restrict carry,
+                       int32_t* __restrict out, SideFlow side, DiagonalFlow diagonal) {
+  constexpr int kMost = SlopeRow::kMostCells + 2;
+  int32_t east[kMost], south[kMost], south_east[kMost], south_west[kMost];  // [cell + 1]
+  for (int i = -1; i < n; ++i) east[i + 1] = side(row, i, row, i + 1);
+  for (int i = 0; i < n; ++i) south[i + 1] = side(row, i, below, i);
+  for (int i = -1; i < n; ++i) south_east[i + 1] = diagonal(row, i, below, i + 1);
+  for (int i = 0; i <= n; ++i) south_west[i + 1] = diagonal(row, i, below, i - 1);
+  for (int i = 0; i < n; ++i) {
+    const int32_t change = carry[i] + east[i] - east[i + 1] - south[i + 1] - south_east[i + 1] - south_west[i + 1];
+    out[i] = row.height[i] + change;
+    carry[i] = south[i + 1] + south_east[i] + south_west[i + 2];
+  }
+}
+
+inline int32_t averageFlow(const SlopeRow& from, int i, const SlopeRow& to, int j, int threshold) {
+  const int drop = from.height[i] - to.height[j];
+  return rules::slopeGives(drop, threshold, to.room[j]) ? rules::slopeFlow(from.amount[i], to.room[j]) : 0;
+}
+
+void averageFlows(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, int32_t* carry,
+                  int32_t* out) {
+  const int threshold = numbers.threshold;
+  const auto flow = [threshold](const SlopeRow& a, int i, const SlopeRow& b, int j) {
+    return averageFlow(a, i, b, j, threshold) - averageFlow(b, j, a, i, threshold);
+  };
+  flowsOfRow(row, below, n, carry, out, flow, flow);
+}
+
+void fluxFlows(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, int32_t* carry,
+               int32_t* out) {
+  const int roughness = numbers.roughness;
+  const auto flowOver = [roughness](int threshold) {
+    return [roughness, threshold](const SlopeRow& a, int i, const SlopeRow& b, int j) {
+      return rules::slopeFlux(a.height[i], b.height[j], threshold, roughness, a.soil[i], b.soil[j], a.room[i],
+                              b.room[j]);
+    };
+  };
+  flowsOfRow(row, below, n, carry, out, flowOver(numbers.threshold), flowOver(numbers.diagonal_threshold));
+}
+
+void scatterFlows(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers,
+                  int32_t* const change[3]) {
+  const int threshold = numbers.threshold;
+  const SlopeRow* const rows[3] = {&above, &row, &below};
+  int32_t lost[SlopeRow::kMostCells] = {};
+  for (int d = 0; d < 8; ++d) {
+    const int dx = rules::neighbourX(d), line = 1 + rules::neighbourY(d);
+    const SlopeRow& to = *rows[line];
+    int32_t* __restrict gained = change[line] + dx;
+    for (int i = 0; i < n; ++i) {
+      const int32_t flow = averageFlow(row, i, to, i + dx, threshold);
+      lost[i] += flow;
+      gained[i] += flow;
+    }
+  }
+  for (int i = 0; i < n; ++i) change[1][i] -= lost[i];
+}
+
 }  // namespace
 
 #define SPOOR_TEXT2(x) #x
@@ -179,6 +284,11 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            exchangeRows,
                                                            exchangeRowsBeneath,
                                                            exchangeWithin,
-                                                           exchangeWithinBeneath};
+                                                           exchangeWithinBeneath,
+                                                           slopeCells,
+                                                           slopeAmounts,
+                                                           averageFlows,
+                                                           fluxFlows,
+                                                           scatterFlows};
 
 }  // namespace spoor

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 
 #include "shaders/rules/exchange.h"
 #include "shared/sim/native_stages.h"
@@ -119,9 +118,15 @@ template <typename Requests>
 void sumRequests(const NativeContext& context, DomainWork& domain, const Requests& requests, int row) {
   requests.prepareRow(context, row);
   TargetSums sums(domain.requested);
+  std::int64_t count = 0;
   forEachSource(domain, row, [&](std::size_t i, int x) {
-    requests.of(i, x, row, [&](std::int32_t target, std::int32_t amount) { sums.add(target, amount); });
+    requests.of(i, x, row, [&](std::int32_t target, std::int32_t amount) {
+      sums.add(target, amount);
+      ++count;
+    });
   });
+  constexpr std::int64_t kRequestBytes = 48;  // target, sums and height, in and out
+  std::atomic_ref(domain.bytes_moved).fetch_add(kRequestBytes * count, std::memory_order_relaxed);
 }
 
 /// What each cell with requests can take: the gap beneath a body, and never above the height limit.
@@ -193,7 +198,6 @@ void runRound(const NativeContext& context, DomainWork& domain, const Requests& 
   domain.forEachRow(context.pool, [&](int row) {
     if (domain.receives[row] != 0) giveToTargets(context, domain, row, step);
   });
-  domain.penetrating_count = std::accumulate(domain.penetrating_in_row.begin(), domain.penetrating_in_row.end(), 0);
 }
 
 template <typename Requests>
@@ -202,7 +206,7 @@ void runRounds(const NativeContext& context, DomainWork& domain, const Requests&
     if (round > 0) runNearest(context, domain);
     runRound(context, domain, requests, step);
     // Without a newly closed target the next round would find the same.
-    if (domain.penetrating_count == 0 ||
+    if (domain.penetratingLeft() == 0 ||
         std::ranges::count(domain.stale_columns, 0) == std::ssize(domain.stale_columns))
       return;
   }

@@ -33,7 +33,10 @@ class Flow {
   }
 
   void run(int iterations) {
+    constexpr std::int64_t kMovingBytes = 64;  // what it and its neighbours offer and take, besides the list
+    const std::int64_t bytes = std::int64_t(2 * sizeof(FlowCell) + kMovingBytes) * std::ssize(domain_.flow_cells);
     for (int done = 0; done < iterations; ++done) {
+      domain_.bytes_moved += bytes;
       moved_ = false;
       forEachPart([&](std::int32_t i) { findRoom(i); });
       forEachPart([&](std::int32_t i) { move(i); });

@@ -14,10 +14,22 @@ namespace {
 constexpr std::int64_t kGatherBytes = 16;       // per active cell: height and bedrock, in and out
 constexpr std::int64_t kClearBytes = 4;         // per active cell and sub-step: underside
 constexpr std::int64_t kPenetrationBytes = 20;  // per domain cell: depth lowers the underside; three planes in, one out
-constexpr std::int64_t kNearestBytes = 16;      // per domain cell: two column passes, in and out
-constexpr std::int64_t kDisplaceBytes = 48;     // per penetrating cell: target, sums and height, in and out
-constexpr std::int64_t kPairBytes = 24;         // two heights in and out, two bedrocks in
+constexpr std::int64_t kCompactionBytes = 8;    // per active cell: compacted soil, in and out
 constexpr std::int64_t kHashBytes = 8;          // per active cell: compare with the tile
+
+/// Bytes of the relaxation for each pair of cells visited.
+std::int64_t pairBytes(SlopeRule rule) {
+  switch (rule) {
+    case SlopeRule::exchange:
+      return 24;  // two heights in and out, two bedrocks in
+    case SlopeRule::flux:
+    case SlopeRule::interleaved:
+      return 16 / 4;  // per cell: height, bedrock, underside in, new height out
+    case SlopeRule::scatter:
+      return 28 / 4;  // per cell: a copy before it, and new heights in and out
+  }
+  return 0;
+}
 
 class NativeBackend final : public Backend {
  public:
@@ -51,6 +63,7 @@ class NativeBackend final : public Backend {
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
     effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
+    if (plan.parameters.compression_q16 > 0) effect.bytes_moved += effect.active_cells * kCompactionBytes;
     int sweep = 0;
     for (const SubStep& sub_step : plan.sub_steps) {
       runSubStep(context, sub_step, sweep, effect);
@@ -68,15 +81,9 @@ class NativeBackend final : public Backend {
   void forget() override { submitted_.reset(); }
 
   BackendMemory memory() const override {
-    std::size_t cells = area_.height.capacity() + area_.bedrock.capacity() + area_.underside.capacity() +
-                        area_.lowest_underside.capacity() + area_.last_change.capacity() + underside_before_.capacity();
-    std::size_t sums = 0;
-    for (const DomainWork& domain : domains_) {
-      cells +=
-          domain.overlap.capacity() + domain.nearest_row.capacity() + domain.target.capacity() + domain.room.capacity();
-      sums += domain.requested.capacity() + domain.granted.capacity();
-    }
-    return {std::int64_t(cells * sizeof(std::int32_t) + sums * sizeof(std::int64_t)), 0};
+    std::int64_t bytes = area_.memoryBytes() + std::int64_t(underside_before_.capacity() * sizeof(std::int32_t));
+    for (const DomainWork& domain : domains_) bytes += domain.memoryBytes();
+    return {bytes, 0};
   }
 
  private:
@@ -102,22 +109,26 @@ class NativeBackend final : public Backend {
       effect.bytes_moved += cells * kPenetrationBytes;
       {
         StageTimer timer(effect.stage_ms, Stage::penetration);
-        effect.penetrating_cells += runPenetration(context, domain);
+        runPenetration(context, domain);
       }
-      if (domain.penetrating_count == 0) continue;
-      effect.bytes_moved += cells * kNearestBytes + domain.penetrating_count * kDisplaceBytes;
+      effect.penetrating_cells += domain.penetrating_count;
+      if (domain.penetratingLeft() == 0) continue;
       {
         StageTimer timer(effect.stage_ms, Stage::nearest);
         runNearest(context, domain);
       }
-      StageTimer timer(effect.stage_ms, Stage::displace);
-      effect.kept_back += runDisplace(context, domain, step);
+      {
+        StageTimer timer(effect.stage_ms, Stage::displace);
+        effect.kept_back += runDisplace(context, domain, step);
+      }
+      effect.bytes_moved += domain.bytes_moved;
     }
     StageTimer timer(effect.stage_ms, Stage::relax);
     const std::int64_t pairs = runRelax(context, sweep, sub_step.sweep_count, skip_settled_);
     effect.pairs_visited += pairs;
-    effect.relax_bytes += pairs * kPairBytes;
-    effect.bytes_moved += pairs * kPairBytes;
+    const std::int64_t bytes = pairs * pairBytes(context.parameters.slopes);
+    effect.relax_bytes += bytes;
+    effect.bytes_moved += bytes;
   }
 
   ThreadPool pool_;

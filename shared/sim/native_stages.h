@@ -61,6 +61,8 @@ struct DomainWork {
   std::vector<std::int32_t> room;       // what a cell with requests can take, kRoomForAll where they fit
   std::vector<std::int64_t> granted;    // what was let in where not all fits; 0 everywhere between sub-steps
 
+  std::int64_t bytes_moved = 0;  // by stages nearest and displace (TickEffect::bytes_moved)
+
   static constexpr std::int32_t kRoomForAll = INT32_MAX;
 
   int width() const { return box.x1 - box.x0; }
@@ -68,6 +70,8 @@ struct DomainWork {
   /// Columns that are searched together.
   int columnsPerTask() const { return std::max(rules::kTileSize, rowsPerTask(rows())); }
   void reset(const CellBox& new_box, const WorkArea& area);
+  /// Cells with overlap > 0 now.
+  int penetratingLeft() const;
   std::int64_t memoryBytes() const;
 
   /// Calls body(row) for all rows, in parallel.
@@ -84,12 +88,11 @@ struct DomainWork {
 /// with each segment's lowest.
 void runDepth(const NativeContext& context, const SubStep& sub_step);
 
-/// Stage penetration: fills overlap and its counts, and presses soil together where the tick compacts. Returns how many
-/// cells penetrated before that.
-int runPenetration(const NativeContext& context, DomainWork& domain);
+/// Stage penetration: fills overlap and its counts, and presses soil together where the tick compacts.
+void runPenetration(const NativeContext& context, DomainWork& domain);
 
 /// Stage nearest: fills target for penetrating cells (iterative displacement: for all that are not free), and receives.
-/// Only where penetrating_count > 0.
+/// Only where a cell penetrates.
 void runNearest(const NativeContext& context, DomainWork& domain);
 
 /// The same by jump flooding, as runNearest calls it.
@@ -110,6 +113,9 @@ std::int64_t displaceInSteps(const NativeContext& context, DomainWork& domain, s
 /// Stage relax: `sweep_count` sweeps over all active tiles, the first of them being number `first_sweep` of this tick.
 /// Returns the pairs of cells visited.
 std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled);
+
+/// The same by rules/slope.h, as runRelax calls it.
+void runSlopes(const NativeContext& context, int sweep_count);
 
 /// Stage hash: brings changed cells back to their tiles. Returns what became of each active tile, for commitTick.
 std::vector<TileOutcome> runHash(const NativeContext& context);

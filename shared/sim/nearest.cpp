@@ -14,6 +14,9 @@ namespace {
 void searchColumns(const NativeContext& context, DomainWork& domain) {
   const int width = domain.width(), rows = domain.rows();
   const int task_columns = domain.columnsPerTask();
+  constexpr std::int64_t kCellBytes = 16;  // two passes, in and out
+  domain.bytes_moved +=
+      kCellBytes * rows * std::min<std::int64_t>(width, std::ranges::count(domain.stale_columns, 1) * task_columns);
   context.pool.forEach((width + task_columns - 1) / task_columns, [&](int task, int) {
     if (std::exchange(domain.stale_columns[task], 0) == 0) return;
     const int x = task * task_columns;

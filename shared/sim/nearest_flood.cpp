@@ -96,8 +96,12 @@ constexpr auto kPassOfMetric = std::array{pass<rules::kEuclidean>, pass<rules::k
 
 void runFlood(const NativeContext& context, DomainWork& domain) {
   begin(context, domain);
+  constexpr std::int64_t kCellBytes = 12;    // overlap in, two planes out
+  constexpr std::int64_t kSeekerBytes = 45;  // and pass: position, order, what nine cells know in; what one knows out
   const auto one_pass = kPassOfMetric[std::size_t(context.parameters.metric)];
   const std::vector<int> steps = stepsOf(context.parameters.nearest, std::max(domain.width(), domain.rows()));
+  domain.bytes_moved +=
+      kCellBytes * std::ssize(domain.overlap) + kSeekerBytes * std::ssize(domain.seekers) * std::ssize(steps);
   for (const int step : steps) {
     forEachPart(context, domain,
                 [&](int first, int end) { one_pass(domain, domain.known[0], domain.known[1], step, first, end); });

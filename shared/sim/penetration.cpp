@@ -1,7 +1,6 @@
 // Stage penetration: which cells a body overlaps, and by how much.
 #include "shaders/rules/penetration.h"
 
-#include <atomic>
 #include <numeric>
 
 #include "shared/sim/native_stages.h"
@@ -38,28 +37,39 @@ void DomainWork::reset(const CellBox& new_box, const WorkArea& area) {
   for (int row = 0; row < rows(); ++row) row_offset[std::size_t(row)] = area.offsetAt(box.x0, box.y0 + row);
   overlap.resize(cells);
   penetrating_in_row.resize(std::size_t(rows()));
-  stale_columns.assign(std::size_t(width() / columnsPerTask() + 1), 1);
+  stale_columns.assign(std::size_t((width() + columnsPerTask() - 1) / columnsPerTask()), 1);
   penetrating_count = 0;
+  bytes_moved = 0;
 }
 
-int runPenetration(const NativeContext& context, DomainWork& domain) {
-  const int task_rows = rowsPerTask(domain.width());
-  std::atomic<int> compacted_away = 0;  // cells whose whole overlap was pressed together
-  context.pool.forEach((domain.rows() + task_rows - 1) / task_rows, [&](int task, int) {
-    for (int row = task * task_rows; row < std::min((task + 1) * task_rows, domain.rows()); ++row) {
-      const std::size_t from = domain.row_offset[row];
-      domain.penetrating_in_row[row] = context.kernels.overlap(
-          context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,
-          domain.width(), context.parameters.obstacle_threshold_q,
-          domain.overlap.data() + std::size_t(row) * domain.width());
-      if (context.parameters.compression_q16 == 0 || domain.penetrating_in_row[row] == 0) continue;
-      compacted_away += domain.penetrating_in_row[row];
-      domain.penetrating_in_row[row] = compactRow(context, domain, row);
-      compacted_away -= domain.penetrating_in_row[row];
-    }
+std::int64_t DomainWork::memoryBytes() const {
+  std::size_t bytes = 0;
+  for (const auto* plane : {&overlap, &nearest_row, &target, &room, &known[0], &known[1], &seekers, &flow_index,
+                            &carried, &flow_room, &flow_total, &offer[0], &offer[1]})
+    bytes += plane->capacity() * sizeof(std::int32_t);
+  for (const auto* plane : {&requested, &granted}) bytes += plane->capacity() * sizeof(std::int64_t);
+  for (const auto* plane : {&receives, &stale_columns, &seeker_order, &parts}) bytes += plane->capacity();
+  return std::int64_t(bytes + flow_cells.capacity() * sizeof(FlowCell) + row_offset.capacity() * sizeof(std::size_t) +
+                      penetrating_in_row.capacity() * sizeof(int));
+}
+
+int DomainWork::penetratingLeft() const {
+  return std::accumulate(penetrating_in_row.begin(), penetrating_in_row.end(), 0);
+}
+
+void runPenetration(const NativeContext& context, DomainWork& domain) {
+  domain.forEachRow(context.pool, [&](int row) {
+    const std::size_t from = domain.row_offset[row];
+    domain.penetrating_in_row[row] = context.kernels.overlap(
+        context.area.height.data() + from, context.area.bedrock.data() + from, context.area.underside.data() + from,
+        domain.width(), context.parameters.obstacle_threshold_q,
+        domain.overlap.data() + std::size_t(row) * domain.width());
   });
-  domain.penetrating_count = std::accumulate(domain.penetrating_in_row.begin(), domain.penetrating_in_row.end(), 0);
-  return domain.penetrating_count + compacted_away;
+  domain.penetrating_count = domain.penetratingLeft();
+  if (context.parameters.compression_q16 == 0) return;
+  domain.forEachRow(context.pool, [&](int row) {
+    if (domain.penetrating_in_row[row] > 0) domain.penetrating_in_row[row] = compactRow(context, domain, row);
+  });
 }
 
 }  // namespace spoor

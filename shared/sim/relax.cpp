@@ -217,6 +217,10 @@ class Relaxation {
 }  // namespace
 
 std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled) {
+  if (context.parameters.slopes != SlopeRule::exchange) {
+    runSlopes(context, sweep_count);
+    return std::int64_t(context.area.tiles.size()) * rules::kTileCells * 4 * sweep_count;
+  }
   Relaxation relaxation(context, skip_settled);
   std::int64_t visited = 0;
   for (int done = 0; done < sweep_count; done += kSweepsAtOnce) {

@@ -73,6 +73,13 @@ const Run& WorkArea::runAt(std::int32_t x, std::int32_t y) const {
   return runs[found];
 }
 
+std::int64_t WorkArea::memoryBytes() const {
+  std::size_t count = 0;
+  for (const auto* plane : {&height, &bedrock, &underside, &compacted, &next_height, &lowest_underside, &last_change})
+    count += plane->capacity();
+  return std::int64_t(count * sizeof(std::int32_t));
+}
+
 void WorkArea::clearUnderside(const ScenePack& pack, ThreadPool& pool) {
   pool.forEach(int(runs.size()), [&](int i, int) {
     const Run& run = runs[i];

@@ -40,6 +40,7 @@ struct WorkArea {
   std::vector<int> run_of_tile;                          // [tiles]
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
   std::vector<std::int32_t> compacted;                   // [cells] where the tick compacts, else empty
+  std::vector<std::int32_t> next_height;                 // [cells] of the sweep to come; none with pair exchange
   std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
   std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
 
@@ -58,6 +59,8 @@ struct WorkArea {
     return run.segment_offset + std::size_t(y % rules::kTileSize) * std::size_t(run.tile_count) +
            std::size_t(x / rules::kTileSize - run.first.x);
   }
+
+  std::int64_t memoryBytes() const;
 
   /// Takes all undersides away, but for the world's border, which stays closed.
   void clearUnderside(const ScenePack& pack, ThreadPool& pool);
