@@ -12,8 +12,24 @@ import tempfile
 
 ROOT = pathlib.Path(sys.argv[1]).resolve() / "shaders"
 STAGES = {".comp": "comp", ".vert": "vert", ".tesc": "tesc", ".tese": "tese", ".frag": "frag"}
-# What the host defines (gl_stages.cpp), in every combination that makes another text.
+# What the host defines (gl_programs.cpp), in every combination that makes another text.
+COMPACTS = [f"SPOOR_COMPACTS {compacts}" for compacts in (0, 1)]
+METRICS = [f"SPOOR_METRIC {metric}" for metric in (0, 1, 2)]
+SPREADS = [f"SPOOR_SPREAD {spread}" for spread in (0, 1)]
+BENEATH = [f"SPOOR_BENEATH {beneath}" for beneath in (0, 1)]
 DEFINES = {
+    "gather.comp": COMPACTS,
+    "penetration.comp": COMPACTS,
+    "hash.comp": COMPACTS,
+    "nearest_search.comp": METRICS,
+    "flood_pass.comp": METRICS,
+    "flow_begin.comp": METRICS,
+    "displace_request.comp": [f"{spread}|SPOOR_SEARCH 0" for spread in SPREADS] + [f"{spread}|SPOOR_SEARCH 1|{metric}" for spread in SPREADS for metric in METRICS],
+    "displace_take.comp": SPREADS,
+    "slope_amounts.comp": BENEATH,
+    "slope_gather.comp": BENEATH,
+    "slope_scatter.comp": BENEATH,
+    "slope_flux.comp": BENEATH,
     "exchange_along.comp": [f"SPOOR_PARITY {parity}|SPOOR_BENEATH {beneath}" for parity in (0, 1) for beneath in (0, 1)],
     "exchange_across.comp": [f"SPOOR_PARITY {parity}|SPOOR_SHIFT {shift}|SPOOR_BENEATH {beneath}"
                              for parity in (0, 1) for shift in (0, 1, -1) for beneath in (0, 1)],

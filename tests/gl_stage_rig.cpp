@@ -63,7 +63,7 @@ class GlStageRig final : public StageRig {
     pool_ = std::make_unique<TilePool>(device_->limits.storage_block_bytes, 1 << 16, nobody);
     ThreadPool threads(1);
     const ActiveTiles tiles = takeTiles(plan_, world.base, WorldState{}, threads);
-    auto slots = pool_->hold(tiles.tiles, plan_.tick);
+    auto slots = pool_->hold(tiles.tiles, plan_.tick, compacts());
     if (!slots) throw std::runtime_error(slots.error());
     slots_ = std::move(*slots);
     check(device_->stages.load(meshes_));
@@ -86,17 +86,23 @@ class GlStageRig final : public StageRig {
   void setTarget(const Cells& cells) override { upload(device_->stages.target().name(), 0, cells); }
   Cells tileHeights() const override { return tilesOf(device_->stages.height()); }
   Cells tileUndersides() const override { return tilesOf(device_->stages.underside()); }
-  Cells tileCompacted() const override { return Cells(slots_.size() * rules::kTileCells); }
-  std::int64_t keptBack() const override { return 0; }
+  Cells tileCompacted() const override {
+    return compacts() ? tilesOf(device_->stages.compacted()) : Cells(slots_.size() * rules::kTileCells);
+  }
+  std::int64_t keptBack() const override {
+    const Cells words = download(device_->stages.tables(), headOffset(offsetof(rules::TickHead, kept_back_low)), 2);
+    return std::int64_t(std::uint64_t(std::uint32_t(words[1])) << 32 | std::uint32_t(words[0]));
+  }
 
   void press(const std::vector<PlacedBody>& bodies) override {
-    const Cells heights = tileHeights();
+    const Cells heights = tileHeights(), compacted = tileCompacted();
     begin(bodies);
     putHeights(heights);
+    putTileCompacted(compacted);
   }
 
   void penetration() override {
-    if (penetrated_) restart(tileHeights(), tileUndersides());  // the lists of a sub-step are made once
+    if (penetrated_) restart(tileHeights(), tileUndersides(), tileCompacted());  // the lists of a sub-step are made once
     penetrated_ = true;
     const CurrentContext current(*device_->context);
     device_->stages.penetration(tables_, 0);
@@ -133,9 +139,12 @@ class GlStageRig final : public StageRig {
     penetrated_ = false;
   }
 
-  void restart(const Cells& heights, const Cells& undersides) {
+  bool compacts() const { return plan_.parameters.compression_q16 > 0; }
+
+  void restart(const Cells& heights, const Cells& undersides, const Cells& compacted) {
     begin({});
     putHeights(heights);
+    putTileCompacted(compacted);
     const Cells cells = inDeviceOrder(undersides);
     upload(device_->stages.underside().name(), 0, cells);
     // What ceiling.comp would find.
@@ -148,9 +157,11 @@ class GlStageRig final : public StageRig {
       }
     upload(device_->stages.tileStates().name(), 0, states);
   }
-  void putTileHeights(const Cells& cells) override { restart(cells, tileUndersides()); }
-  void putTileCompacted(const Cells&) override {}
-  void putTileUndersides(const Cells& cells) override { restart(tileHeights(), cells); }
+  void putTileHeights(const Cells& cells) override { restart(cells, tileUndersides(), tileCompacted()); }
+  void putTileCompacted(const Cells& cells) override {
+    if (compacts()) upload(device_->stages.compacted().name(), 0, inDeviceOrder(cells));
+  }
+  void putTileUndersides(const Cells& cells) override { restart(tileHeights(), cells, tileCompacted()); }
 
   void putHeights(const Cells& heights) {
     upload(device_->stages.height().name(), 0, inDeviceOrder(heights));

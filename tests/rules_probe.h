@@ -178,7 +178,7 @@ RULE int probeRule(int which, int seed) {
                     drawn(seed, 66, 0, 500));
   if (which == 6) return roomBeneath(height_a, height_b, threshold);
   if (which == 7)
-    return return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b,
+    return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b,
                               drawn(seed, 95, -kHeightLimit, kHeightLimit), threshold);
   if (which == 8)
     return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000),

@@ -30,6 +30,13 @@ constexpr std::int64_t kHashBytes = 8;            // per active cell: compare wi
 
 const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
 
+void addBox(PlaneCells& cells, const TileChange& change, const std::vector<std::int32_t>& differences) {
+  for (int row = 0; row < change.height; ++row)
+    for (int column = 0; column < change.width; ++column)
+      cells[std::size_t((change.y + row) * rules::kTileSize + change.x + column)] +=
+          differences[std::size_t(row * change.width + column)];
+}
+
 /// A tick between submit() and settle().
 struct Submitted {
   TickPlan plan;
@@ -43,7 +50,8 @@ struct Submitted {
 struct Uncollected {
   std::int64_t cells = 0;  // differences, of all changes in their order
   std::vector<std::int64_t> first_of_change;
-  int readback = 0;  // which of the two
+  std::vector<char> compacts;  // [changes] do differences of compacted soil follow those of heights?
+  int readback = 0;            // which of the two
 };
 
 class GlBackend final : public Backend {
@@ -121,12 +129,13 @@ class GlBackend final : public Backend {
     for (std::size_t i = 0; i < changes.size(); ++i) {
       TileChange& change = changes[i];
       const std::int32_t* first = cells + tick.first_of_change[i];
-      change.difference.assign(first, first + change.width * change.height);
-      PlaneCells& height = state.tiles.find(change.at)->height();
-      for (int row = 0; row < change.height; ++row)
-        for (int column = 0; column < change.width; ++column)
-          height[std::size_t((change.y + row) * rules::kTileSize + change.x + column)] +=
-              change.difference[std::size_t(row * change.width + column)];
+      const int cell_count = change.width * change.height;
+      Tile& tile = *state.tiles.find(change.at);
+      change.difference.assign(first, first + cell_count);
+      addBox(tile.height(), change, change.difference);
+      if (tick.compacts[i] == 0) continue;
+      change.compaction.assign(first + cell_count, first + 2 * cell_count);
+      addBox(tile.makeCompacted(), change, change.compaction);
     }
     return {};
   }
@@ -139,9 +148,13 @@ class GlBackend final : public Backend {
   }
 
   BackendMemory memory() const override {
-    return {device_->tiles.hostBytes() + device_->results.bytes() + device_->changed_cells[0].bytes() +
-                device_->changed_cells[1].bytes(),
-            device_->tiles.deviceBytes() + device_->stages.deviceBytes()};
+    BackendMemory memory;
+    memory.host_bytes = device_->tiles.hostBytes() + device_->results.bytes() + device_->changed_cells[0].bytes() +
+                        device_->changed_cells[1].bytes();
+    memory.buffers = device_->stages.buffers();
+    memory.buffers.push_back({"pool of live tiles", device_->tiles.deviceBytes()});
+    for (const BufferBytes& buffer : memory.buffers) memory.device_bytes += buffer.bytes;
+    return memory;
   }
 
  private:
@@ -169,7 +182,7 @@ class GlBackend final : public Backend {
       if (Status status = device_->stages.load(meshes_); !status) return status;
       loaded_ = tick.pack;
     }
-    auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick);
+    auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick, compactsIn(tick.plan));
     if (!slots) return Error{slots.error()};
     tick.tables =
         makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_), shape_);
@@ -225,7 +238,9 @@ class GlBackend final : public Backend {
     if (Status status = device_->finished.wait("results"); !status) return status;
     std::memcpy(&head_, device_->results.data(), kHeadBytes);
     device_->clock.addTo(tick.effect.stage_ms);
-    highest_ = std::max(highest_, head_.highest);
+    // Only pair exchange never lifts a cell above all others.
+    highest_ =
+        tick.plan.parameters.slopes == SlopeRule::exchange ? std::max(highest_, head_.highest) : rules::kHeightLimit;
     if (head_.staged_cells == 0) return {};
     if (Status status = readback().reserve(stagedBytes()); !status) return status;
     glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, stagedBytes());
@@ -239,13 +254,15 @@ class GlBackend final : public Backend {
     const std::vector<Tile*> tiles = tick.active.tiles;
     std::vector<TileOutcome> outcomes(count);
     std::vector<std::int64_t> first_of_tile(count);
+    std::vector<char> compacts_in_tile(count);
     for (std::size_t i = 0; i < count; ++i) {
       rules::TileResult result;
       std::memcpy(&result,
                   device_->results.data() + kHeadBytes + std::size_t(tick.tables.tile_index[i]) * sizeof(result),
                   sizeof(result));
-      outcomes[i] = outcomeOf(result);
+      outcomes[i] = outcomeOf(result, *tiles[i], compactsIn(tick.plan));
       first_of_tile[i] = result.first_staged;
+      compacts_in_tile[i] = char(result.compacts);
     }
     std::vector<TileChange>& changes = tick.effect.changes;
     changes = commitTick(tick.plan, std::move(tick.active), std::move(outcomes), state);
@@ -254,17 +271,21 @@ class GlBackend final : public Backend {
     for (const TileChange& change : changes) {
       while (tiles[tile]->at != change.at) ++tile;
       left.first_of_change.push_back(first_of_tile[tile]);
+      left.compacts.push_back(compacts_in_tile[tile]);
     }
     left.cells = head_.staged_cells;
     left.readback = next_readback_;
     next_readback_ = 1 - next_readback_;
-    fillIn(std::int64_t(count), tick.effect);
+    fillIn(tick.plan, std::int64_t(count), tick.effect);
   }
 
   ReadbackBuffer& readback() { return device_->changed_cells[next_readback_]; }
   std::int64_t stagedBytes() const { return head_.staged_cells * std::int64_t(sizeof(std::int32_t)); }
 
-  static TileOutcome outcomeOf(const rules::TileResult& result) {
+  static bool compactsIn(const TickPlan& plan) { return plan.parameters.compression_q16 > 0; }
+
+  /// @param tile  with its compacted soil as of the tick before
+  static TileOutcome outcomeOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
     TileOutcome outcome;
     if (result.x1 == 0) return outcome;
     outcome.change.x = std::uint8_t(result.x0);
@@ -273,15 +294,26 @@ class GlBackend final : public Backend {
     outcome.change.height = std::uint8_t(result.y1 - result.y0);
     const auto joined = [](const rules::uint(&halves)[2]) { return halves[0] + (std::uint64_t(halves[1]) << 16); };
     outcome.hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
+    outcome.compacted = std::int64_t(joined(result.compacted));
+    if (!compacts) {  // what was compacted in earlier ticks is not on the device
+      outcome.hash += planeHash(tile.at, Plane::compacted, tile.compacted());
+      outcome.compacted = tile.compacted_sum;
+    }
     outcome.ground = std::int64_t(joined(result.height)) - (std::int64_t(rules::kTileCells) << 30);
     return outcome;
   }
 
   /// The effect's figures.
-  void fillIn(std::int64_t tile_count, TickEffect& effect) const {
+  void fillIn(const TickPlan& plan, std::int64_t tile_count, TickEffect& effect) const {
     effect.active_cells = tile_count * rules::kTileCells;
     effect.penetrating_cells = head_.penetrating_cells;
+    effect.kept_back = std::int64_t(std::uint64_t(head_.kept_back_high) << 32 | head_.kept_back_low);
     effect.pairs_visited = head_.slabs_visited * kSlabPairs;
+    if (plan.parameters.slopes != SlopeRule::exchange) {
+      effect.pairs_visited = 0;
+      for (const SubStep& sub_step : plan.sub_steps)
+        effect.pairs_visited += sub_step.sweep_count * 4 * effect.active_cells;
+    }
     effect.relax_bytes = effect.pairs_visited * (schedule_ == RelaxSchedule::fused ? kFusedPairBytes : kPairBytes);
     effect.bytes_moved = effect.relax_bytes + effect.active_cells * (kGatherBytes + kHashBytes) +
                          effect.domain_cells * (kCoverBytes + kPenetrationBytes) +
@@ -289,7 +321,7 @@ class GlBackend final : public Backend {
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 
-  static constexpr std::int64_t kHeadBytes = offsetof(rules::TickHead, lists);
+  static constexpr std::int64_t kHeadBytes = sizeof(rules::TickHead);
 
   std::unique_ptr<HeadlessContext> context_;
   GlLimits limits_;

@@ -2,67 +2,40 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
+#include <utility>
 
 #include "shaders/host/gl_context.h"
-#include "shaders/host/shader_loader.h"
-#include "shaders/rules/exchange.h"
 
 namespace spoor {
 namespace {
 
 constexpr int kCellBytes = sizeof(std::int32_t);
-// Lanes of a fused sweep, for each lane of the other stages: its groups have 1024 cells and their halo to work on.
-constexpr int kSweepLanes = 4;
-
-GlProgram program(const std::string& name, int group, std::vector<std::pair<std::string, std::string>> defines = {}) {
-  defines.emplace_back("SPOOR_GROUP", std::to_string(group));
-  return makeProgram({"sim/" + name + ".comp"}, defines);
-}
-
-GlProgram exchangeProgram(int matching, int beneath, int group) {
-  const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
-  return program(matching < rules::kMatchVertical ? "exchange_along" : "exchange_across", group,
-                 {{"SPOOR_PARITY", std::to_string(matching & 1)},
-                  {"SPOOR_SHIFT", std::to_string(shift)},
-                  {"SPOOR_BENEATH", std::to_string(beneath)}});
-}
-
-void setUniform(int location, int value) { glUniform1i(location, value); }
-
-/// Where the arguments of a list that the GPU makes lie; `list` is its offset in SubStepLists.
-std::int64_t listOffset(const TickTables& tick, int sub_step, std::size_t list) {
-  return tick.head.offset +
-         std::int64_t(offsetof(rules::TickHead, lists) + sub_step * sizeof(rules::SubStepLists) + list);
-}
-
 }  // namespace
+
+/// Where the arguments of a list that the GPU makes lie; `member` is its offset in RoundLists.
+std::int64_t GlStages::listOffset(const TickTables& tick, int list, std::size_t member) {
+  return tick.head.offset +
+         std::int64_t(sizeof(rules::TickHead) + std::size_t(list) * sizeof(rules::RoundLists) + member);
+}
 
 GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled)
     : schedule_(schedule),
       skip_settled_(skip_settled),
-      gather_(program("gather", shape.group)),
-      cover_(program("cover", shape.group)),
-      ceiling_(program("ceiling", shape.group)),
-      place_(program("place", shape.group)),
-      depth_(program("depth", shape.group)),
-      depth_large_(program("depth_large", shape.group)),
-      penetration_(program("penetration", shape.group)),
-      nearest_columns_(program("nearest_columns", shape.group)),
-      nearest_search_(program("nearest_search", shape.group)),
-      displace_request_(program("displace_request", shape.group)),
-      displace_take_(program("displace_take", shape.group)),
-      displace_give_(program("displace_give", shape.group)),
-      hash_(program("hash", shape.group)),
+      programs_(shape.group, schedule),
+      chosen_(programs_.choose(Parameters{})),
       upload_("a tick's tables", limits.storage_block_bytes),
       vertices_("the meshes' vertices", limits.storage_block_bytes),
       indices_("the meshes' triangles and edges", limits.storage_block_bytes),
       points_("the bodies' points", limits.storage_block_bytes),
       large_("the list of large primitives", limits.storage_block_bytes),
       height_{{"the active tiles' heights", limits.storage_block_bytes},
-              {"the active tiles' next heights", limits.storage_block_bytes}},
+              {"the active tiles' next heights", limits.storage_block_bytes},
+              {"the active tiles' spare heights", limits.storage_block_bytes}},
       bedrock_("the active tiles' bedrock", limits.storage_block_bytes),
       underside_("the active tiles' undersides", limits.storage_block_bytes),
       underside_before_("the active tiles' earlier undersides", limits.storage_block_bytes),
+      compacted_("the active tiles' compacted soil", limits.storage_block_bytes),
       tile_states_("the active tiles' states", limits.storage_block_bytes),
       overlap_("the domains' overlap", limits.storage_block_bytes),
       free_mask_("the domains' free cells", limits.storage_block_bytes),
@@ -72,18 +45,15 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       receivers_("the list of receiving rows", limits.storage_block_bytes),
       requested_low_("the domains' requests", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
       requested_high_("the domains' requests", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
-      granted_low_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
-      granted_high_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
+      granted_("the domains' grants", limits.storage_block_bytes, GrowingBuffer::Content::zeroed),
+      flood_("the domains' flooding", limits.storage_block_bytes),
+      carried_{{"the domains' moving soil", limits.storage_block_bytes},
+               {"the domains' moving soil", limits.storage_block_bytes}},
+      offered_("the domains' offers", limits.storage_block_bytes),
+      room_("the domains' room", limits.storage_block_bytes),
+      amounts_("the active tiles' amounts", limits.storage_block_bytes),
       results_("the tiles' results", limits.storage_block_bytes),
-      staging_("the changed cells", limits.storage_block_bytes) {
-  if (schedule == RelaxSchedule::fused) {
-    sweep_ = program("sweep", kSweepLanes * shape.group);
-    return;
-  }
-  for (int matching = 0; matching < rules::kMatchingCount; ++matching)
-    for (int beneath = 0; beneath < 2; ++beneath)
-      exchange_[std::size_t(matching)][std::size_t(beneath)] = exchangeProgram(matching, beneath, shape.group);
-}
+      staging_("the changed cells", limits.storage_block_bytes) {}
 
 Status GlStages::load(const MeshTable& meshes) {
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
@@ -97,6 +67,18 @@ Status GlStages::load(const MeshTable& meshes) {
 
 Status GlStages::begin(const TickTables& tick) {
   current_ = 0;
+  try {
+    chosen_ = programs_.choose(tick.parameters);
+  } catch (const std::runtime_error& error) {
+    return Error{error.what()};
+  }
+  if (Status status = reserve(tick); !status) return status;
+  glNamedBufferSubData(upload_.name(), 0, std::int64_t(tick.bytes.size()), tick.bytes.data());
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, upload_.name());
+  return glStatus("copying a tick's tables");
+}
+
+Status GlStages::reserve(const TickTables& tick) {
   const std::int64_t tiles = std::int64_t(tick.tile_index.size());
   SubStepTables largest = tick.stood;
   for (const SubStepTables& step : tick.sub_steps) {
@@ -106,6 +88,11 @@ Status GlStages::begin(const TickTables& tick) {
     largest.mask_words = std::max(largest.mask_words, step.mask_words);
     largest.row_chunks = std::max(largest.row_chunks, step.row_chunks);
   }
+  const SlopeRule slopes = tick.parameters.slopes;
+  const bool iterative = tick.parameters.displacement == Displacement::iterative;
+  const bool flooded = tick.parameters.nearest != NearestSearch::exact;
+  const bool compacts = tick.parameters.compression_q16 > 0;
+  const bool in_turns = slopes != SlopeRule::exchange || schedule_ == RelaxSchedule::fused;
   const std::int64_t plane_bytes = tiles * rules::kTileCells * kCellBytes;
   const std::int64_t domain_bytes = largest.domain_cells * kCellBytes;
   const std::pair<GrowingBuffer*, std::int64_t> needs[] = {
@@ -113,34 +100,39 @@ Status GlStages::begin(const TickTables& tick) {
       {&points_, largest.point_count * std::int64_t(sizeof(rules::RasterPoint))},
       {&large_, largest.primitive_count * 2 * kCellBytes},
       {&height_[0], plane_bytes},
-      {&height_[1], schedule_ == RelaxSchedule::fused ? plane_bytes : 0},
+      {&height_[1], in_turns ? plane_bytes : 0},
+      {&height_[2], slopes == SlopeRule::scatter ? plane_bytes : 0},
+      {&amounts_, slopes == SlopeRule::interleaved ? plane_bytes : 0},
       {&bedrock_, plane_bytes},
       {&underside_, plane_bytes},
       {&underside_before_, plane_bytes},
+      {&compacted_, compacts ? plane_bytes : 0},
       {&tile_states_, tiles * std::int64_t(sizeof(rules::TileState))},
       {&overlap_, domain_bytes},
       {&free_mask_, largest.mask_words * kCellBytes},
       {&nearest_row_, domain_bytes},
       {&target_, domain_bytes},
+      {&flood_, flooded ? domain_bytes : 0},
       {&row_chunks_, largest.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
-      {&receivers_, largest.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
-      {&requested_low_, domain_bytes},
-      {&requested_high_, domain_bytes},
-      {&granted_low_, domain_bytes},
-      {&granted_high_, domain_bytes},
+      {&receivers_, iterative ? 0 : largest.row_chunks * std::int64_t(sizeof(rules::RowChunk))},
+      {&requested_low_, iterative ? 0 : domain_bytes},
+      {&requested_high_, iterative ? 0 : domain_bytes},
+      {&granted_, iterative ? 0 : domain_bytes},
+      {&carried_[0], iterative ? domain_bytes : 0},
+      {&carried_[1], iterative ? domain_bytes : 0},
+      {&offered_, iterative ? domain_bytes : 0},
+      {&room_, iterative ? domain_bytes : 0},
       {&results_, tiles * std::int64_t(sizeof(rules::TileResult))},
-      {&staging_, plane_bytes},
+      {&staging_, plane_bytes * (compacts ? 2 : 1)},
   };
   for (const auto& [buffer, bytes] : needs)
     if (Status status = buffer->reserve(bytes); !status) return status;
-  glNamedBufferSubData(upload_.name(), 0, std::int64_t(tick.bytes.size()), tick.bytes.data());
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, upload_.name());
-  return glStatus("copying a tick's tables");
+  return {};
 }
 
-void GlStages::use(const GlProgram& program, int sub_step) {
+void GlStages::use(const GlProgram& program, int list) {
   glUseProgram(program.name());
-  setUniform(1, sub_step);
+  setUniform(1, list);
 }
 
 void GlStages::bindTable(int binding, const TableRange& range) const {
@@ -176,7 +168,11 @@ void GlStages::gather(const TickTables& tick, const TilePool& pool) {
   bindCells(tick);
   pool.height().bind(rules::kBindPoolHeight);
   pool.bedrock().bind(rules::kBindPoolBedrock);
-  use(gather_);
+  if (tick.parameters.compression_q16 > 0) {
+    compacted_.bind(rules::kBindCompacted);
+    pool.compacted().bind(rules::kBindPoolCompacted);
+  }
+  use(*chosen_.gather);
   dispatch(tick.gather);
 }
 
@@ -184,12 +180,13 @@ void GlStages::depth(const TickTables& tick, int i) {
   const SubStepTables& step = i == kStood ? tick.stood : tick.sub_steps[std::size_t(i)];
   bindCells(tick);
   underside_before_.bind(rules::kBindUndersideBefore);
-  use(cover_, i);
+  use(*chosen_.cover);
   setUniform(2, step.first_step);
   dispatch(step.cover);
   if (step.primitives.count > 0) drawBodies(tick, i);
-  use(ceiling_, i);
+  use(*chosen_.ceiling);
   setUniform(2, step.first_step);
+  setUniform(3, tick.parameters.frustum_height_q);
   dispatch(step.cover);
 }
 
@@ -202,98 +199,12 @@ void GlStages::drawBodies(const TickTables& tick, int i) {
   indices_.bind(rules::kBindIndices);
   points_.bind(rules::kBindPoints);
   large_.bind(rules::kBindLarge);
-  use(place_, i);
+  use(*chosen_.place);
   dispatch(step.place);
-  use(depth_, i);
+  use(*chosen_.depth, step.first_list);
   dispatch(step.primitives);
-  use(depth_large_, i);
-  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, large)));
-}
-
-void GlStages::penetration(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  if (step.domain_blocks.count == 0) return;
-  bindCells(tick);
-  bindTable(rules::kBindDomains, step.domains);
-  bindTable(rules::kBindDomainTiles, step.domain_tiles);
-  underside_before_.bind(rules::kBindUndersideBefore);
-  overlap_.bind(rules::kBindOverlap);
-  free_mask_.bind(rules::kBindFreeMask);
-  row_chunks_.bind(rules::kBindRowChunks);
-  use(penetration_, i);
-  dispatch(step.domain_blocks);
-}
-
-void GlStages::nearest(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  if (step.domain_blocks.count == 0) return;
-  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
-  target_.bind(rules::kBindTarget);
-  nearest_row_.bind(rules::kBindNearestRow);
-  use(nearest_columns_, i);
-  dispatchListed(rows);
-  use(nearest_search_, i);
-  int found_stride = 0;
-  for (const int stride : {64, 8, 1}) {
-    setUniform(2, stride);
-    setUniform(3, found_stride);
-    dispatchListed(rows);
-    found_stride = stride;
-  }
-}
-
-void GlStages::displace(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  if (step.domain_blocks.count == 0) return;
-  const std::int64_t rows = listOffset(tick, i, offsetof(rules::SubStepLists, rows));
-  requested_low_.bind(rules::kBindRequestedLow);
-  requested_high_.bind(rules::kBindRequestedHigh);
-  receivers_.bind(rules::kBindReceivers);
-  use(displace_request_, i);
-  dispatchListed(rows);
-  granted_low_.bind(rules::kBindGrantedLow);
-  granted_high_.bind(rules::kBindGrantedHigh);
-  use(displace_take_, i);
-  dispatchListed(rows);
-  receivers_.bind(rules::kBindRowChunks);
-  use(displace_give_, i);
-  setUniform(2, step.first_step);
-  dispatchListed(listOffset(tick, i, offsetof(rules::SubStepLists, receivers)));
-}
-
-void GlStages::relax(const TickTables& tick, int i) {
-  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  for (int sweep = 0; sweep < step.sweep_count; ++sweep) {
-    const int first_step = step.first_step + sweep * rules::kMatchingCount;
-    if (schedule_ == RelaxSchedule::fused)
-      sweepFused(tick, first_step);
-    else
-      sweepPlain(tick, first_step);
-  }
-}
-
-void GlStages::sweepPlain(const TickTables& tick, int first_step) {
-  bindCells(tick);
-  for (int matching = 0; matching < rules::kMatchingCount; ++matching) {
-    use(exchange_[std::size_t(matching)][tick.beneath ? 1 : 0]);
-    setUniform(2, first_step + matching);
-    setUniform(3, skip_settled_ ? 1 : 0);
-    setUniform(4, int(tick.tile_index.size()));
-    setUniform(5, rules::exchangeThreshold(matching < rules::kMatchDiagonal ? tick.parameters.slope_threshold_q
-                                                                            : tick.parameters.diagonal_threshold_q));
-    setUniform(6, tick.parameters.obstacle_threshold_q);
-    dispatch(tick.exchange);
-  }
-}
-
-void GlStages::sweepFused(const TickTables& tick, int first_step) {
-  bindCells(tick);
-  height_[1 - current_].bind(rules::kBindNextHeight);
-  use(sweep_);
-  setUniform(2, first_step);
-  setUniform(3, skip_settled_ ? 1 : 0);
-  dispatch(tick.sweep);
-  current_ = 1 - current_;
+  use(*chosen_.depth_large, step.first_list);
+  dispatchListed(listOffset(tick, step.first_list, offsetof(rules::RoundLists, large)));
 }
 
 void GlStages::hash(const TickTables& tick, const TilePool& pool) {
@@ -301,18 +212,31 @@ void GlStages::hash(const TickTables& tick, const TilePool& pool) {
   pool.height().bind(rules::kBindPoolHeight);
   results_.bind(rules::kBindResults);
   staging_.bind(rules::kBindStaging);
-  use(hash_);
+  if (tick.parameters.compression_q16 > 0) {
+    compacted_.bind(rules::kBindCompacted);
+    pool.compacted().bind(rules::kBindPoolCompacted);
+  }
+  use(*chosen_.hash);
   dispatch(tick.hash);
 }
 
-std::int64_t GlStages::deviceBytes() const {
-  std::int64_t bytes = height_[0].bytes() + height_[1].bytes();
-  for (const GrowingBuffer* buffer :
-       {&upload_,           &vertices_,      &indices_,        &points_,      &large_,        &bedrock_, &underside_,
-        &underside_before_, &tile_states_,   &overlap_,        &free_mask_,   &nearest_row_,  &target_,  &row_chunks_,
-        &receivers_,        &requested_low_, &requested_high_, &granted_low_, &granted_high_, &results_, &staging_})
-    bytes += buffer->bytes();
-  return bytes;
+std::vector<BufferBytes> GlStages::buffers() const {
+  const auto bytes = [](const auto&... buffers) { return (... + buffers.bytes()); };
+  return {{"heights", bytes(height_[0])},
+          {"heights after a sweep (2)", bytes(height_[1], height_[2])},
+          {"amounts that slopes give", bytes(amounts_)},
+          {"bedrock", bytes(bedrock_)},
+          {"undersides (2)", bytes(underside_, underside_before_)},
+          {"compacted soil", bytes(compacted_)},
+          {"states of tiles", bytes(tile_states_)},
+          {"overlap, in domains", bytes(overlap_, free_mask_)},
+          {"exact search, in domains", bytes(nearest_row_)},
+          {"jump flooding, in domains", bytes(flood_)},
+          {"targets, in domains", bytes(target_, row_chunks_, receivers_)},
+          {"requests and grants, in domains", bytes(requested_low_, requested_high_, granted_)},
+          {"iterative displacement, in domains", bytes(carried_[0], carried_[1], offered_, room_)},
+          {"results and changed cells", bytes(results_, staging_)},
+          {"meshes, bodies and tables", bytes(upload_, vertices_, indices_, points_, large_)}};
 }
 
 }  // namespace spoor

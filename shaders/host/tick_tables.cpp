@@ -14,9 +14,8 @@ constexpr int kSize = rules::kTileSize;
 // As GLSL's std430 lays them out: ints, one after the other.
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
-static_assert(sizeof(rules::TileResult) == 44 && sizeof(rules::GroupCount) == 16 && sizeof(rules::SubStepLists) == 48);
-static_assert(sizeof(rules::TickHead) == 32 + (rules::kSubStepMost + 1) * sizeof(rules::SubStepLists));
-static_assert(rules::kSubStepMost == kSubStepLimit);
+static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::RoundLists) == 64);
+static_assert(sizeof(rules::TickHead) == 56);
 
 /// Collects tables as bytes.
 class TableWriter {
@@ -71,6 +70,7 @@ class TableMaker {
     tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 4 / rules::kGatherQuads / shape_.group), shape_);
     tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
     tables_.sweep = writer_.dispatch(tiles * rules::kBlocksPerSide * rules::kBlocksPerSide, shape_);
+    tables_.slope = writer_.dispatch(tiles * rules::kTileCells / rules::kSlabRows / shape_.group, shape_);
     tables_.hash = writer_.dispatch(tiles, shape_);
     int sweep = 0;
     covered_before_.assign(std::size_t(count_), 0);
@@ -156,6 +156,7 @@ class TableMaker {
       step.domain_cells += std::int64_t(entry.width) * entry.rows;
       step.mask_words += std::int64_t(entry.width) * groupsFor(entry.rows, rules::kMaskRows);
       step.row_chunks += std::int64_t(entry.rows) * groupsFor(entry.width, shape_.group);
+      step.longest_side = std::max({step.longest_side, entry.width, entry.rows});
       row_count_ += entry.rows;
     }
     step.domains = writer_.put(domains);
@@ -224,20 +225,37 @@ class TableMaker {
     return entry;
   }
 
-  /// The head comes last: it ends in the row flags of all sub-steps.
+  /// A dispatch of so many groups, which are none until a shader finds that there is work for them.
+  rules::GroupCount waiting(int groups) const {
+    const int x = std::clamp(groups, 1, shape_.groups_per_row);
+    return {x, 0, 1, (groups + x - 1) / x};
+  }
+
+  /// The head comes last: it ends in the lists of all sub-steps' rounds.
   void putHead() {
+    tables_.row_flags = writer_.put(std::vector<std::int32_t>(std::size_t(row_count_)));
     rules::TickHead head{};
     head.tile_count = count_;
     head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
     head.slope_threshold = rules::exchangeThreshold(plan_.parameters.slope_threshold_q);
     head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.diagonal_threshold_q);
+    head.compression = plan_.parameters.compression_q16;
+    head.compaction_limit = plan_.parameters.compaction_limit_q16;
+    head.penetration_divider = plan_.parameters.penetration_divider_q;
+    head.spread_cells = plan_.parameters.spread_cells;
     head.highest = -rules::kHeightLimit;
-    for (rules::SubStepLists& lists : head.lists) {
-      const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
-      lists = {empty, empty, empty};
+    const rules::GroupCount empty{rules::kDispatchColumns, 0, 1, 0};
+    std::vector<rules::RoundLists> lists;
+    tables_.stood.first_list = 0;
+    lists.push_back({empty, empty, empty, waiting(0)});
+    for (SubStepTables& step : tables_.sub_steps) {
+      step.first_list = int(lists.size());
+      for (int round = 0; round < plan_.parameters.capacity_rounds; ++round)
+        lists.push_back({empty, empty, empty, waiting(step.domain_blocks.count)});
     }
-    std::vector<std::uint8_t> bytes(sizeof(head) + std::size_t(std::max(row_count_, 1)) * sizeof(std::int32_t));
+    std::vector<std::uint8_t> bytes(sizeof(head) + std::max<std::size_t>(lists.size(), 1) * sizeof(rules::RoundLists));
     std::memcpy(bytes.data(), &head, sizeof(head));
+    std::memcpy(bytes.data() + sizeof(head), lists.data(), lists.size() * sizeof(rules::RoundLists));
     tables_.head = writer_.put(bytes);
   }
 

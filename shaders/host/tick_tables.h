@@ -44,9 +44,11 @@ struct GroupList {
 
 struct SubStepTables {
   TableRange bodies, domains, domain_tiles;
+  int first_list = 0;  // of RoundLists; one for each round
   GroupList cover, place, primitives, domain_blocks;
   std::int64_t point_count = 0, primitive_count = 0, domain_cells = 0, mask_words = 0, row_chunks = 0;
-  int first_step = 0;  // of the relaxation
+  int longest_side = 0;  // of a domain, in cells
+  int first_step = 0;    // of the relaxation
   int sweep_count = 0;
 };
 
@@ -54,9 +56,10 @@ struct SubStepTables {
 struct TickTables {
   std::vector<std::uint8_t> bytes;
   Parameters parameters;
-  TableRange head;   // TickHead and row flags
+  TableRange head;  // TickHead and RoundLists
+  TableRange row_flags;
   TableRange tiles;  // TileEntry [active tiles]
-  GroupList gather, exchange, sweep, hash;
+  GroupList gather, exchange, sweep, slope, hash;
   SubStepTables stood;  // where bodies stood before the tick: for depth only
   std::vector<SubStepTables> sub_steps;
   bool beneath = false;         // may an underside, or the height limit, stop soil from coming somewhere?

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "shared/base/assert.h"
 #include "shared/base/kernels.h"
@@ -19,11 +20,12 @@ TilePool::TilePool(std::int64_t block_bytes, int tile_limit, std::function<void(
       tile_limit_(std::clamp(tile_limit, 1, most_slots_)),
       say_(std::move(say)),
       height_("the pool's heights", block_bytes, GrowingBuffer::Content::kept),
-      bedrock_("the pool's bedrock", block_bytes, GrowingBuffer::Content::kept) {
+      bedrock_("the pool's bedrock", block_bytes, GrowingBuffer::Content::kept),
+      compacted_("the pool's compacted soil", block_bytes, GrowingBuffer::Content::kept) {
   SPOOR_ASSERT(std::size_t(most_slots_) >= kTickTilesLimit);
 }
 
-Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32_t tick) {
+Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32_t tick, bool compacts) {
   std::vector<int> slots(tiles.size(), -1), fresh;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     const auto found = slot_of_.find(tiles[i]);
@@ -38,11 +40,28 @@ Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32
   for (const int i : fresh) {
     const int slot = slots[std::size_t(i)] = free_.back();
     free_.pop_back();
-    slots_[std::size_t(slot)] = {tiles[std::size_t(i)], tick};
+    slots_[std::size_t(slot)] = {tiles[std::size_t(i)], tick, false};
     slot_of_.emplace(tiles[std::size_t(i)], slot);
   }
-  copyToDevice(tiles, slots, std::move(fresh));
+  copyToDevice(height_, tiles, slots, fresh, [&](const Tile& tile) {
+    highest_ = std::max(highest_, kernels().highest(tile.height().data(), rules::kTileCells));
+    return tile.height();
+  });
+  copyToDevice(bedrock_, tiles, slots, std::move(fresh), [](const Tile& tile) { return *tile.bedrock; });
+  if (compacts)
+    if (Status status = holdCompacted(tiles, slots); !status) return Error{status.error()};
   return slots;
+}
+
+/// Copies the compacted soil of tiles that came to the device in ticks that do not compact. No later tick changed it.
+Status TilePool::holdCompacted(std::span<Tile* const> tiles, std::span<const int> slots) {
+  if (Status status = compacted_.reserve(std::int64_t(slots_.size()) * kPlaneBytes); !status) return status;
+  std::vector<int> fresh;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (!std::exchange(slots_[std::size_t(slots[i])].has_compacted, true)) fresh.push_back(int(i));
+  copyToDevice(compacted_, tiles, slots, std::move(fresh),
+               [](const Tile& tile) { return tile.compacted() != nullptr ? *tile.compacted() : PlaneCells{}; });
+  return {};
 }
 
 void TilePool::forget() {
@@ -107,7 +126,9 @@ void TilePool::evict(int count, std::int32_t tick) {
 }
 
 /// One copy for each stretch of slots that follow one another.
-void TilePool::copyToDevice(std::span<Tile* const> tiles, std::span<const int> slots, std::vector<int> fresh) {
+template <typename PlaneOf>
+void TilePool::copyToDevice(const GrowingBuffer& to, std::span<Tile* const> tiles, std::span<const int> slots,
+                            std::vector<int> fresh, PlaneOf planeOf) {
   constexpr std::size_t kTilesAtOnce = 256;
   std::ranges::sort(fresh, {}, [&](int i) { return slots[std::size_t(i)]; });
   std::vector<PlaneCells> cells;
@@ -117,18 +138,11 @@ void TilePool::copyToDevice(std::span<Tile* const> tiles, std::span<const int> s
     while (end < fresh.size() && end - begin < kTilesAtOnce &&
            slots[std::size_t(fresh[end])] == first_slot + int(end - begin))
       ++end;
-    const auto copy = [&](const GrowingBuffer& to, auto plane_of) {
-      cells.resize(end - begin);
-      for (std::size_t i = begin; i < end; ++i) cells[i - begin] = plane_of(*tiles[std::size_t(fresh[i])]);
-      const std::int64_t bytes = std::int64_t(cells.size()) * kPlaneBytes;
-      glNamedBufferSubData(to.name(), first_slot * kPlaneBytes, bytes, cells.data());
-      copied_bytes_ += bytes;
-    };
-    copy(height_, [&](const Tile& tile) {
-      highest_ = std::max(highest_, kernels().highest(tile.height().data(), rules::kTileCells));
-      return tile.height();
-    });
-    copy(bedrock_, [](const Tile& tile) { return *tile.bedrock; });
+    cells.resize(end - begin);
+    for (std::size_t i = begin; i < end; ++i) cells[i - begin] = planeOf(*tiles[std::size_t(fresh[i])]);
+    const std::int64_t bytes = std::int64_t(cells.size()) * kPlaneBytes;
+    glNamedBufferSubData(to.name(), first_slot * kPlaneBytes, bytes, cells.data());
+    copied_bytes_ += bytes;
     begin = end;
   }
 }

@@ -10,7 +10,8 @@
 
 namespace spoor {
 
-/// Live tiles that stay on the device from tick to tick: heights and bedrock, in slots of tile size. It grows as tiles
+/// Live tiles that stay on the device from tick to tick: heights and bedrock, in slots of tile size, and
+/// compacted soil from the first tick on that compacts. It grows as tiles
 /// become live; at its limit, tiles that were not used for longest give up their slots and exist on the host only,
 /// which holds every live tile anyway, until they are active again.
 class TilePool {
@@ -23,17 +24,19 @@ class TilePool {
 
   /// Sees to it that all these tiles are in slots, and copies to the device those that were not. Their cells on the
   /// host must be as of the last tick in which they were active. At most kTickTilesLimit.
+  /// @param compacts  with their compacted soil
   /// @return  a slot for each
-  Result<std::vector<int>> hold(std::span<Tile* const> tiles, std::int32_t tick);
+  Result<std::vector<int>> hold(std::span<Tile* const> tiles, std::int32_t tick, bool compacts);
 
   /// No tile is in a slot any more.
   void forget();
 
   const GrowingBuffer& height() const { return height_; }
   const GrowingBuffer& bedrock() const { return bedrock_; }
+  const GrowingBuffer& compacted() const { return compacted_; }
 
   int residentCount() const { return int(slot_of_.size()); }
-  std::int64_t deviceBytes() const { return height_.bytes() + bedrock_.bytes(); }
+  std::int64_t deviceBytes() const { return height_.bytes() + bedrock_.bytes() + compacted_.bytes(); }
   std::int64_t hostBytes() const;
   std::int64_t copiedBytes() const { return copied_bytes_; }  // to the device, since the pool was made
   /// No cell that came to the device was higher.
@@ -43,18 +46,22 @@ class TilePool {
  private:
   struct Slot {
     const Tile* tile = nullptr;
-    std::int32_t used_at = 0;  // tick
+    std::int32_t used_at = 0;    // tick
+    bool has_compacted = false;  // are its cells of that plane here too?
   };
 
   Status makeRoom(int missing, std::int32_t tick);
   Status grow(int slot_count);
   void evict(int count, std::int32_t tick);
-  void copyToDevice(std::span<Tile* const> tiles, std::span<const int> slots, std::vector<int> fresh);
+  Status holdCompacted(std::span<Tile* const> tiles, std::span<const int> slots);
+  template <typename PlaneOf>
+  void copyToDevice(const GrowingBuffer& to, std::span<Tile* const> tiles, std::span<const int> slots,
+                    std::vector<int> fresh, PlaneOf planeOf);
 
   int most_slots_;
   int tile_limit_;
   std::function<void(const std::string&)> say_;
-  GrowingBuffer height_, bedrock_;
+  GrowingBuffer height_, bedrock_, compacted_;
   std::vector<Slot> slots_;
   std::vector<int> free_;  // the lowest at the back
   std::unordered_map<const Tile*, int> slot_of_;

@@ -26,6 +26,5 @@ void main() {
     underside[at] = inside ? kNoUnderside : -kHeightLimit;
   }
   // Where a body was, room beneath it may have changed.
-  if (lane() == 0 && covered)
-    tile_states[block.owner].changed_at[block.x] = relax_step;
+  if (lane() == 0 && covered) tile_states[block.owner].changed_at[block.x] = relax_step;
 }

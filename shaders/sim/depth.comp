@@ -1,5 +1,5 @@
 // Stage depth: lowers the undersides beneath small primitives, and puts large ones on a list.
-// In: bodies, points, indices, blocks (owner: body; x: first primitive). Out: underside, large, tick.lists.
+// In: bodies, points, indices, blocks (owner: body; x: first primitive). Out: underside, large, lists.
 // A lane takes a primitive. Twin: depth.cpp.
 #version 450 core
 #include "../rules/raster.h"
@@ -22,8 +22,8 @@ void main() {
     drawRows(p, p.first, p.end, 1);
     return;
   }
-  int entry = atomicAdd(tick.lists[sub_step].large.used, 1);
+  int entry = atomicAdd(lists[list].large.used, 1);
   int rows = (entry + kDispatchColumns / kLargeParts) / (kDispatchColumns / kLargeParts);
-  atomicMax(tick.lists[sub_step].large.y, min(rows, kDispatchRowsMost));  // beyond that a group takes several
+  atomicMax(lists[list].large.y, min(rows, kDispatchRowsMost));  // beyond that a group takes several
   large[entry] = ivec2(block.owner, primitive);
 }

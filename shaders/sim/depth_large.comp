@@ -11,7 +11,7 @@ layout(std430, binding = kBindLarge) readonly buffer Large { ivec2 large[]; };
 
 void main() {
   int group_total = int(gl_NumWorkGroups.x * gl_NumWorkGroups.y);
-  for (int group = groupIndex(); group / kLargeParts < tick.lists[sub_step].large.used; group += group_total) {
+  for (int group = groupIndex(); group / kLargeParts < lists[list].large.used; group += group_total) {
     Primitive p = primitiveAt(large[group / kLargeParts].x, large[group / kLargeParts].y);
     drawRows(p, p.first + group % kLargeParts * kGroup + lane(), p.end, kLargeParts * kGroup);
   }

@@ -1,6 +1,6 @@
 // Stage active: lays out the active tiles' cells side by side, as they are before the tick.
-// In: tiles, pool. Out: height, bedrock, tile states, tick.highest. A group takes kGroup * 16 cells of a tile.
-// Twin: WorkArea::gather.
+// In: tiles, pool. Out: height, bedrock, tile states, tick.highest; where SPOOR_COMPACTS is 1, compacted.
+// A group takes kGroup * 16 cells of a tile. Twin: WorkArea::gather.
 #version 450 core
 #include "tick.glsl"
 
@@ -10,6 +10,10 @@ layout(std430, binding = kBindHeight) writeonly buffer Height { ivec4 height[]; 
 layout(std430, binding = kBindBedrock) writeonly buffer Bedrock { ivec4 bedrock[]; };
 layout(std430, binding = kBindPoolHeight) readonly buffer PoolHeight { ivec4 pool_height[]; };
 layout(std430, binding = kBindPoolBedrock) readonly buffer PoolBedrock { ivec4 pool_bedrock[]; };
+#if SPOOR_COMPACTS
+layout(std430, binding = kBindCompacted) writeonly buffer Compacted { ivec4 compacted[]; };
+layout(std430, binding = kBindPoolCompacted) readonly buffer PoolCompacted { ivec4 pool_compacted[]; };
+#endif
 
 const int kQuads = kTileCells / 4;
 const int kGroupsPerTile = kQuads / (kGroup * kGatherQuads);
@@ -27,6 +31,9 @@ void main() {
     ivec4 cells = pool_height[tiles[tile].slot * kQuads + quad];
     height[tile * kQuads + quad] = cells;
     bedrock[tile * kQuads + quad] = pool_bedrock[tiles[tile].slot * kQuads + quad];
+#if SPOOR_COMPACTS
+    compacted[tile * kQuads + quad] = pool_compacted[tiles[tile].slot * kQuads + quad];
+#endif
     lane_highest = max(lane_highest, max(max(cells.x, cells.y), max(cells.z, cells.w)));
   }
   atomicMax(group_highest, lane_highest);

@@ -6,7 +6,7 @@
 
 SPOOR_RULES_BEGIN
 
-// Storage bindings; no shader uses more than 12 of them. Cells of tiles are indexed by active tile, those of domains by
+// Storage bindings; no shader uses more than 13 of them. Cells of tiles are indexed by active tile, those of domains by
 // DomainEntry::first_cell.
 RULE_CONST kBindTick = 0;            // Tick
 RULE_CONST kBindTiles = 1;           // TileEntry [active tiles]
@@ -21,27 +21,36 @@ RULE_CONST kBindOverlap = 9;         // int [domain cells]
 RULE_CONST kBindTarget = 10;         // int [domain cells]: index in the domain's box, or kNoTarget
 RULE_CONST kBindRequestedLow = 11;   // uint [domain cells]: soil that wants to come to a cell, 64 bits in two words;
 RULE_CONST kBindRequestedHigh = 12;  // 0 everywhere between sub-steps
-RULE_CONST kBindGrantedLow = 13;     // the same: what was let in where not all fits
-RULE_CONST kBindGrantedHigh = 14;
-RULE_CONST kBindRowChunks = 15;  // RowChunk [groups of the dispatch]
+RULE_CONST kBindGranted = 14;        // uint [domain cells]: what was let in where not all fits; 0 as these
+RULE_CONST kBindRowChunks = 15;      // RowChunk [groups of the dispatch]
 // Stages that do not need the planes of displacement use their bindings for:
-RULE_CONST kBindBodies = 9;        // depth: BodyEntry [bodies of the sub-step]
-RULE_CONST kBindPoints = 10;       // depth: int [3 * points of the sub-step's bodies], as RasterPoint
-RULE_CONST kBindVertices = 11;     // depth: int [3 * vertices of all meshes]
-RULE_CONST kBindIndices = 12;      // depth: int, the triangles of all meshes (3 each) and their edges (2 each)
-RULE_CONST kBindLarge = 13;        // depth: ivec2 (body, primitive): those worth groups of their own
+RULE_CONST kBindBodies = 9;            // depth: BodyEntry [bodies of the sub-step]
+RULE_CONST kBindPoints = 10;           // depth: int [3 * points of the sub-step's bodies], as RasterPoint
+RULE_CONST kBindVertices = 11;         // depth: int [3 * vertices of all meshes]
+RULE_CONST kBindIndices = 12;          // depth: int, the triangles of all meshes (3 each) and their edges (2 each)
+RULE_CONST kBindLarge = 13;            // depth: ivec2 (body, primitive): those worth groups of their own
 RULE_CONST kBindUndersideBefore = 12;  // depth, penetration: as kBindUnderside, a sub-step earlier
-RULE_CONST kBindFreeMask = 13;     // nearest: uint [words of the domains]: a column's 32 cells, bit set: free
+RULE_CONST kBindFreeMask = 13;         // nearest: uint [words of the domains]: a column's 32 cells, bit set: free
 RULE_CONST kBindNearestRow = 14;   // nearest: int [domain cells]: of the same column, in rows of the box, or kNoFreeRow
-RULE_CONST kBindReceivers = 13;    // displace: RowChunk: rows that hold targets
-RULE_CONST kBindNextHeight = 6;    // relax: int [active tiles * kTileCells]: heights after a fused sweep
+RULE_CONST kBindRowFlags = 1;      // penetration, displace: int [rows of all domains of all sub-steps]
+RULE_CONST kBindReceivers = 6;     // displace: RowChunk: rows that hold targets
+RULE_CONST kBindKnown = 11;        // nearest by flooding: int [domain cells]: as kBindTarget, before a pass
+RULE_CONST kBindNextKnown = 12;    // the same after it
+RULE_CONST kBindNearer = 11;       // iterative: int [domain cells]: bit d: neighbour d is nearer to a free cell
+RULE_CONST kBindCarried = 12;      // iterative: int [domain cells], before a step
+RULE_CONST kBindNextCarried = 13;  // the same after it
+RULE_CONST kBindOffered = 14;      // iterative: int [domain cells]: sum of offers to a cell
+RULE_CONST kBindRoom = 15;         // iterative: int [domain cells]: what a cell can take in a step
+RULE_CONST kBindNextHeight = 6;    // relax: int [active tiles * kTileCells]: heights after a sweep
+RULE_CONST kBindAmounts = 9;       // relax: the same: what a cell gives each neighbour that it gives to
+RULE_CONST kBindSpareHeight = 10;  // relax: the same: heights after the next sweep
 RULE_CONST kBindPoolHeight = 9;    // gather, hash: int [slots * kTileCells]: heights before this tick
 RULE_CONST kBindPoolBedrock = 10;  // gather: the same
 RULE_CONST kBindResults = 11;      // hash: TileResult [active tiles]
 RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tiles' boxes, one after the other
+RULE_CONST kBindPoolCompacted = 13;  // gather, hash: as heights
+RULE_CONST kBindCompacted = 14;  // gather, penetration, hash: int [active tiles * kTileCells], where the tick compacts
 
-RULE_CONST kSubStepMost = 32;
-RULE_CONST kStoodLists = kSubStepMost;  // lists of where bodies stood before the tick
 RULE_CONST kGatherQuads = 4;    // cells of a tile, in fours, that a lane gathers
 RULE_CONST kBlocksPerSide = 2;  // of a tile, in a fused sweep
 RULE_CONST kSlabRows = 8;       // what relax skips where nothing has changed
@@ -53,7 +62,7 @@ RULE_CONST kDispatchRowsMost = 65535;  // GL guarantees no more
 RULE_CONST kDispatchColumns = 256;     // groups per row of a dispatch whose size the GPU finds
 
 RULE_CONST kRowPenetrates = 1;
-RULE_CONST kRowReceives = 2;
+RULE_CONST kRowReceives = 2;  // in the first round; in round i that bit << i
 
 /// Size of an indirect dispatch, and how many of its groups have work.
 struct GroupCount {
@@ -63,25 +72,31 @@ struct GroupCount {
   int used;
 };
 
-/// Lists that the GPU makes in a sub-step, in no particular order.
-struct SubStepLists {
-  GroupCount large;      // kBindLarge
-  GroupCount rows;       // kBindRowChunks
+/// Lists that the GPU makes in a round of displacement, in no particular order.
+struct RoundLists {
+  GroupCount large;      // kBindLarge; in the first round only, as depth comes before it
+  GroupCount rows;       // kBindRowChunks; in later rounds the same rows, or none where no soil is left
   GroupCount receivers;  // kBindReceivers
+  GroupCount floods;     // the blocks of the domains; y is 0 until soil is left, then `used`
 };
 
-/// The head of the tick's table; row flags of all sub-steps' domains follow it (DomainEntry::first_row).
+/// The head of the tick's table; RoundLists of all rounds of all sub-steps follow it.
 struct TickHead {
   int tile_count;
   int obstacle_threshold;
-  int slope_threshold;
+  int slope_threshold;  // of pair exchange
   int diagonal_threshold;
+  int compression;  // from here on as in Parameters
+  int compaction_limit;
+  int penetration_divider;
+  int spread_cells;
   // From here on written by the GPU.
   int highest;            // of all heights so far in this tick
   int penetrating_cells;  // of all sub-steps
   int slabs_visited;      // by the relaxation; each stands for kSlabRows * kTileSize / 2 pairs
   int staged_cells;
-  SubStepLists lists[kSubStepMost + 1];
+  uint kept_back_low;  // soil that found no room, of all sub-steps: 64 bits in two words
+  uint kept_back_high;
 };
 
 /// An active tile.
@@ -145,7 +160,7 @@ struct DomainEntry {
   int rows;
   int first_cell;  // in the planes of domains
   int first_word;  // in kBindFreeMask; row-major words of the box
-  int first_row;   // row flags
+  int first_row;   // in kBindRowFlags
   int first_tile;  // in kBindDomainTiles
   int tile_x0;     // the domain's tiles, in tiles
   int tile_y0;
@@ -158,10 +173,12 @@ struct TileResult {
   int y0;
   int x1;
   int y1;
-  uint hash_low[2];   // sums of the low and high 16 bits of the cells' low lanes (rules/mix.h)
+  uint hash_low[2];   // sums of the low and high 16 bits of the cells' low lanes (rules/mix.h), of both planes
   uint hash_high[2];  // and of their high lanes
   uint height[2];     // sums of the low and high 16 bits of height + 2^30
-  int first_staged;   // the box's differences in kBindStaging, row-major
+  uint compacted[2];  // of compacted soil, where the tick compacts
+  int compacts;       // has any compacted soil of the box changed?
+  int first_staged;   // the box's differences in kBindStaging, row-major: heights; where it compacts the other plane
 };
 
 SPOOR_RULES_END

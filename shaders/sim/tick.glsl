@@ -9,10 +9,10 @@ const int kGroup = SPOOR_GROUP;
 
 layout(std430, binding = kBindTick) buffer Tick {
   TickHead tick;
-  int row_flags[];
+  RoundLists lists[];
 };
 layout(location = 0) uniform int group_count;
-layout(location = 1) uniform int sub_step;
+layout(location = 1) uniform int list;  // of RoundLists
 
 /// Groups are dispatched in rows; this is their number in reading order.
 int groupIndex() { return int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x); }
