@@ -81,6 +81,8 @@ Status drawDisplacement(const Arguments& arguments, const RenderSettings& settin
     const std::string name = fmt::format("figure_{}_{}_{}", figure.number, figure.name, metric_name);
     if (const Status written = writePicture(renderer, arguments, name); !written) return written;
   }
+  fmt::print("colours: blue {} mm, pale {} mm, red {} mm\n", kFigureColours.lowest_q / 10, kFigureColours.middle_q / 10,
+             kFigureColours.highest_q / 10);
   return {};
 }
 

@@ -7,7 +7,7 @@
 
 vec3 groundAlbedo() {
   if (frame.world.z == kGroundSand) return vec3(0.60, 0.43, 0.25);
-  if (frame.world.z == kGroundMud) return vec3(0.20, 0.135, 0.085);
+  if (frame.world.z == kGroundMud) return vec3(0.115, 0.080, 0.052);
   return vec3(0.86, 0.88, 0.91);
 }
 
