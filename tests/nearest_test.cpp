@@ -142,7 +142,8 @@ TEST_P(NearestStage, EqualsASearchOverAllCellsWhenSharedOutBetweenThreads) {
     overlap.push_back(engine() % 400 == 0 ? kFree : engine() % 5 == 0 ? kWall : kHere);
   BackendCase backend_case = GetParam();
   backend_case.thread_count = 4;
-  checkAgainstAllCells(Search(backend_case, 401, 299, overlap), "401 x 299");
+  for (const NearestSearch method : {NearestSearch::exact, NearestSearch::one_plus_jump_flooding})
+    checkAgainstAllCells(Search(backend_case, 401, 299, overlap, {.nearest = method}), "401 x 299");
 }
 
 TEST_P(NearestStage, EqualsASearchOverAllCellsAcrossLongDistances) {

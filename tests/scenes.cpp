@@ -149,7 +149,7 @@ Parameters randomParameters(std::uint32_t seed) {
     return *(values.begin() + engine() % std::uint32_t(values.size()));
   };
   Parameters p;
-  p.displacement = Displacement(oneOf({0, 0, 1, 2}));
+  p.displacement = Displacement(oneOf({0, 1, 2}));
   p.nearest = NearestSearch(oneOf({0, 0, 0, 1, 2, 3, 4, 5}));
   p.metric = Metric(oneOf({0, 0, 1, 2}));
   p.slopes = SlopeRule(oneOf({0, 0, 1, 2, 3}));
@@ -166,7 +166,7 @@ Parameters randomParameters(std::uint32_t seed) {
   p.spread_cells = oneOf({1, 3, 16, kSpreadCellsLimit});
   p.capacity_rounds = oneOf({1, 2, 3, 4});
   p.active_margin_cells = oneOf({0, 0, 1, 70});
-  p.frustum_height_q = oneOf({0, 0, 0, 1, 900, 6000});
+  p.frustum_height_q = oneOf({0, 0, 0, 0, 1, 900, 6000});
   return p;
 }
 
@@ -199,6 +199,10 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   pack = noisePack(width, height, engine(), pick(-5000, 5000), 5000 + relief, oneOf({0, 40, 500, 3000, 100000}));
   pack.cell_q = oneOf({1000, 777, 500});
   pack.parameters = randomParameters(std::uint32_t(engine()));
+  world.changed = randomParameters(std::uint32_t(engine()));
+  // A frustum that ends somewhere in the soil or in a body, not beneath all of them.
+  for (Parameters* parameters : {&pack.parameters, &world.changed})
+    if (parameters->frustum_height_q > 1) parameters->frustum_height_q += pack.soil_depth_q - 900;
   const int body_count = pick(1, 3);
   for (int i = 0; i < body_count; ++i) {
     const int size = (pick(0, 5) == 0 ? pick(20, 90) : pick(1, 20)) * pack.cell_q / 2;
@@ -223,7 +227,6 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
     }
     world.ticks.push_back(poses);
   }
-  world.changed = randomParameters(std::uint32_t(engine()));
   if (pick(0, 2) == 0) world.change = std::size_t(pick(0, tick_count - 1));
   std::ostringstream text;
   text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "

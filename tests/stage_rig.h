@@ -29,7 +29,7 @@ class StageRig {
   /// Only where the world's parameters compact. After setHeight and setUnderside.
   void setCompacted(const Cells& cells) { putTileCompacted(withInside(tileCompacted(), cells)); }
   virtual Cells overlap() const = 0;               // after penetration
-  virtual int penetratingCount() const = 0;        // after penetration
+  virtual int penetratingCount() const = 0;        // after penetration; those of whose overlap all was compacted too
   virtual Cells target() const = 0;                // after nearest; of penetrating cells
   virtual void setTarget(const Cells& cells) = 0;  // in place of nearest
   /// Active tiles' heights, kTileCells of each tile in the plan's order, cells outside the world included.
