@@ -44,13 +44,14 @@ RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
 /// floor(a / 2^30) where that fits an int.
 RULE int wideFromQ30(wide a) { return int(a >> 30); }
 
-/// a / count. Ranges: a >= 0, count 1..8. By a reciprocal, rounded up, of 31 bits and 0 to 3 more: exact, and loops
-/// over it vectorise.
+/// a / count. Ranges: a >= 0, count 1..8. By a reciprocal of 31 + `places` bits, rounded up, which is exact. Branches
+/// would keep loops over it from being vectorised.
 RULE int dividedByCount(int a, int count) {
-  uint reciprocal = count == 7 ? 2454267027u : 2147483648u;
-  reciprocal = count == 5 ? 3435973837u : reciprocal;
-  reciprocal = (int(count == 3) | int(count == 6)) != 0 ? 2863311531u : reciprocal;
-  int places = (count > 1 ? 1 : 0) + (count > 2 ? 1 : 0) + (count > 4 ? 1 : 0);
+  const uint of_power = 1u << 31;
+  uint reciprocal = of_power + (uint(count == 7) * (2454267027u - of_power)) +
+                    (uint(count == 5) * (3435973837u - of_power)) +
+                    ((uint(count == 3) | uint(count == 6)) * (2863311531u - of_power));
+  uint places = uint(count > 1) + uint(count > 2) + uint(count > 4);
   return int(uint(std::uint64_t(uint(a) * 2u) * reciprocal >> 32) >> places);
 }
 

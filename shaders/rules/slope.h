@@ -15,14 +15,13 @@ RULE_CONST kDifferenceMost = (1 << 28) - 1;
 RULE bool slopeGives(int drop, int threshold, int room) { return drop > threshold && room > 0; }
 
 /// What a cell gives each of its `count` receiving neighbours: their mean drop times roughness, divided by their
-/// number, rounded down at each step; no more than its soil allows. 0 where there are none.
+/// number, rounded down at each step; no more than its soil allows. 0 where there are none: so are their drops then.
 /// @param drops      sum over them of minInt(drop, kDifferenceMost)
 /// @param roughness  0..2^16
 /// Source: Persson 2019, equation 4.2 and the text after it
 RULE int slopeAmount(int drops, int count, int roughness, int soil) {
   int divisor = maxInt(count, 1);
-  int amount = dividedByCount(minInt(timesQ16(dividedByCount(drops, divisor), roughness), soil), divisor);
-  return count == 0 ? 0 : amount;
+  return dividedByCount(minInt(timesQ16(dividedByCount(drops, divisor), roughness), soil), divisor);
 }
 
 /// What flows over an edge of the amount that a cell gives: a neighbour lets in an eighth of its room from each side,

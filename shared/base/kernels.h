@@ -58,9 +58,9 @@ struct Kernels {
   bool (*exchangeWithin)(std::int32_t* cells, const std::int32_t* bedrock, int pair_count, int threshold);
   bool (*exchangeWithinBeneath)(std::int32_t* cells, const std::int32_t* bedrock, const std::int32_t* underside,
                                 int pair_count, int threshold, int obstacle_threshold);
-  /// Stage relax, the slope rules: n cells as they see them, all but the amount.
+  /// Stage relax, the slope rules: n cells as they see them, into a SlopeRow's planes but for the amount.
   void (*slopeCells)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
-                     int obstacle_threshold, const SlopeRow& out);
+                     int obstacle_threshold, std::int32_t* height_there, std::int32_t* room, std::int32_t* soil);
   /// Amounts of the cells begin .. end - 1 of a row, out of it and the rows above and below; false: all are 0.
   bool (*slopeAmounts)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end,
                        const SlopeNumbers& numbers);

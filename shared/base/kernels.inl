@@ -160,14 +160,12 @@ bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, co
 }
 
 void slopeCells(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
-                const SlopeRow& out) {
-  int32_t* __restrict out_height = out.height;
-  int32_t* __restrict out_room = out.room;
-  int32_t* __restrict out_soil = out.soil;
+                int32_t* __restrict height_there, int32_t* __restrict room, int32_t* __restrict soil) {
   for (int i = 0; i < n; ++i) {
-    out_height[i] = height[i];
-    out_room[i] = rules::roomBeneath(height[i], underside[i], obstacle_threshold);
-    out_soil[i] = height[i] - bedrock[i];
+    const int32_t value = height[i];
+    height_there[i] = value;
+    room[i] = rules::roomBeneath(value, underside[i], obstacle_threshold);
+    soil[i] = value - bedrock[i];
   }
 }
 

@@ -146,8 +146,7 @@ class BlockSweep {
       const int i = piece.x - block_.x0;
       context_.kernels.slopeCells(area_.height.data() + piece.offset, area_.bedrock.data() + piece.offset,
                                   area_.underside.data() + piece.offset, piece.count,
-                                  context_.parameters.obstacle_threshold_q,
-                                  {to.height + i, to.room + i, to.soil + i, to.amount + i});
+                                  context_.parameters.obstacle_threshold_q, to.height + i, to.room + i, to.soil + i);
     });
   }
 
