@@ -52,6 +52,13 @@ std::vector<std::size_t> spreadOver(const DenseWorld& world, const std::vector<s
   return cells;
 }
 
+bool anyPenetrates(const DenseWorld& world, const std::vector<std::int32_t>& overlap, const OracleBox& domain) {
+  for (int y = domain.y0; y < domain.y1; ++y)
+    for (int x = domain.x0; x < domain.x1; ++x)
+      if (overlap[world.at(x, y)] > 0) return true;
+  return false;
+}
+
 /// What every penetrating cell wants in a round.
 std::vector<Request> requestsOf(const DenseWorld& world, const std::vector<std::int32_t>& overlap,
                                 const Parameters& parameters, const OracleBox& domain) {
@@ -91,7 +98,7 @@ bool displaceRound(DenseWorld& world, std::vector<std::int32_t>& overlap, const 
 
 OracleKept displaceInRounds(DenseWorld& world, std::vector<std::int32_t>& overlap, const Parameters& parameters,
                             const OracleBox& domain) {
-  for (int round = 0; round < parameters.capacity_rounds; ++round)
+  for (int round = 0; round < parameters.capacity_rounds && anyPenetrates(world, overlap, domain); ++round)
     if (!displaceRound(world, overlap, parameters, domain)) break;
   OracleKept kept;
   for (int y = domain.y0; y < domain.y1; ++y)
@@ -147,12 +154,12 @@ OracleKept displaceInSteps(DenseWorld& world, const std::vector<std::int32_t>& o
     std::vector<std::int64_t> total(overlap.size(), 0);
     for (std::size_t i = 0; i < overlap.size(); ++i)
       for (const std::size_t to : nearer[i]) {
-        offers.push_back({i, to, std::min(carried[i] / std::int64_t(nearer[i].size()), kOfferMost)});
-        total[to] += offers.back().amount;
+        const std::int64_t amount = std::min(carried[i] / std::int64_t(nearer[i].size()), kOfferMost);
+        if (amount > 0) offers.push_back({i, to, amount});
+        total[to] += amount;
       }
     std::vector<std::int64_t> next = carried;
     for (const Request& offer : offers) {
-      if (offer.amount == 0) continue;
       const std::int64_t moved = granted(offer.amount, roomFor(offer.to), total[offer.to]);
       next[offer.from] -= moved;
       next[offer.to] += moved;
@@ -173,6 +180,7 @@ OracleKept displaceInSteps(DenseWorld& world, const std::vector<std::int32_t>& o
 
 OracleKept oracleDisplace(DenseWorld& world, std::vector<std::int32_t> overlap, const Parameters& parameters,
                           const OracleBox& domain) {
+  if (!anyPenetrates(world, overlap, domain)) return {};
   if (parameters.displacement == Displacement::iterative) return displaceInSteps(world, overlap, parameters, domain);
   return displaceInRounds(world, overlap, parameters, domain);
 }

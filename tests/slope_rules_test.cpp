@@ -206,6 +206,20 @@ TEST(Slopes, FluxIsOddAndWithinAnEighthOfSoilAndRoom) {
   }
 }
 
+TEST(Slopes, DividingByTheNumberOfNeighboursIsExact) {
+  Ranges r{std::mt19937(64)};
+  for (int count = 1; count <= 8; ++count)
+    for (int round = 0; round < 20000; ++round) {
+      const int most = INT32_MAX / count;
+      const int quotient = round < 1000 ? round : round < 2000 ? most - (round - 1000) : r.pick(0, most - 1);
+      // Where a quotient begins, and just before: what is wrong anywhere is wrong there.
+      ASSERT_EQ(rules::dividedByCount(quotient * count, count), quotient) << quotient << " * " << count;
+      if (quotient == 0) continue;
+      ASSERT_EQ(rules::dividedByCount(quotient * count - 1, count), quotient - 1) << quotient << " * " << count;
+    }
+  for (int count = 1; count <= 8; ++count) EXPECT_EQ(rules::dividedByCount(INT32_MAX, count), INT32_MAX / count);
+}
+
 TEST(Slopes, WhatACellGivesIsWithinItsSoilAndItsMeanDrop) {
   Ranges r{std::mt19937(62)};
   EXPECT_EQ(rules::slopeAmount(0, 0, kOneQ16, 1000), 0);

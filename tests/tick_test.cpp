@@ -29,7 +29,7 @@ void checkCounts(const TickEffect& effect, const Oracle& oracle) {
 }
 
 void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
-  const RandomWorld random = randomWorld(seed, backend_case.slow() ? 8 : 20);
+  const RandomWorld random = randomWorld(seed, backend_case.slow() ? 8 : backend_case.gl ? 12 : 20);
   SCOPED_TRACE(random.description);
   const World world(random.pack);
   Simulation simulation = world.simulateOn(backend_case);

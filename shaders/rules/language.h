@@ -44,6 +44,16 @@ RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
 /// floor(a / 2^30) where that fits an int.
 RULE int wideFromQ30(wide a) { return int(a >> 30); }
 
+/// a / count. Ranges: a >= 0, count 1..8. By a reciprocal, rounded up, of 31 bits and 0 to 3 more: exact, and loops
+/// over it vectorise.
+RULE int dividedByCount(int a, int count) {
+  uint reciprocal = count == 7 ? 2454267027u : 2147483648u;
+  reciprocal = count == 5 ? 3435973837u : reciprocal;
+  reciprocal = (int(count == 3) | int(count == 6)) != 0 ? 2863311531u : reciprocal;
+  int places = (count > 1 ? 1 : 0) + (count > 2 ? 1 : 0) + (count > 4 ? 1 : 0);
+  return int(uint(std::uint64_t(uint(a) * 2u) * reciprocal >> 32) >> places);
+}
+
 RULE int minInt(int a, int b) { return a < b ? a : b; }
 RULE int maxInt(int a, int b) { return a > b ? a : b; }
 
@@ -110,6 +120,8 @@ wide wideFloorDiv(wide a, wide b) {
   return wideZero(rest) ? result : wideSub(result, wide(1u, 0u));
 }
 int wideFromQ30(wide a) { return int((a.high << 2) | (a.low >> 30)); }
+
+int dividedByCount(int a, int count) { return a / count; }
 
 int minInt(int a, int b) { return min(a, b); }
 int maxInt(int a, int b) { return max(a, b); }

@@ -20,7 +20,9 @@ RULE bool slopeGives(int drop, int threshold, int room) { return drop > threshol
 /// @param roughness  0..2^16
 /// Source: Persson 2019, equation 4.2 and the text after it
 RULE int slopeAmount(int drops, int count, int roughness, int soil) {
-  return count == 0 ? 0 : minInt(timesQ16(drops / count, roughness), soil) / count;
+  int divisor = maxInt(count, 1);
+  int amount = dividedByCount(minInt(timesQ16(dividedByCount(drops, divisor), roughness), soil), divisor);
+  return count == 0 ? 0 : amount;
 }
 
 /// What flows over an edge of the amount that a cell gives: a neighbour lets in an eighth of its room from each side,

@@ -184,8 +184,8 @@ bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& be
     int sum = 0, count = 0;
     for (int d = 0; d < 8; ++d) {
       const int j = i + rules::neighbourX(d), line = 1 + rules::neighbourY(d);
-      const int drop = height[1][i] - height[line][j];
-      const bool gives = rules::slopeGives(drop, threshold, room[line][j]);
+      const int drop = height[1][i] - height[line][j], room_there = room[line][j];
+      const bool gives = rules::slopeGives(drop, threshold, room_there);
       sum += gives ? rules::minInt(drop, rules::kDifferenceMost) : 0;
       count += gives ? 1 : 0;
     }
@@ -197,7 +197,8 @@ bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& be
     for (int i = 0; i < n; ++i) amount[i] = 0;
     return false;
   }
-  for (int i = 0; i < n; ++i) amount[i] = rules::slopeAmount(drops[i], counts[i], numbers.roughness, soil[i]);
+  const int roughness = numbers.roughness;
+  for (int i = 0; i < n; ++i) amount[i] = rules::slopeAmount(drops[i], counts[i], roughness, soil[i]);
   return true;
 }
 
@@ -219,8 +220,10 @@ inline void flowsOfRow(const SlopeRow& row, const SlopeRow& below, int n, int32_
 }
 
 inline int32_t averageFlow(const SlopeRow& from, int i, const SlopeRow& to, int j, int threshold) {
-  const int drop = from.height[i] - to.height[j];
-  return rules::slopeGives(drop, threshold, to.room[j]) ? rules::slopeFlow(from.amount[i], to.room[j]) : 0;
+  // All is read first: a load that hangs on a condition keeps the loop from being vectorised.
+  const int drop = from.height[i] - to.height[j], room = to.room[j], amount = from.amount[i];
+  const int flow = rules::slopeFlow(amount, room);
+  return rules::slopeGives(drop, threshold, room) ? flow : 0;
 }
 
 void averageFlows(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, int32_t* carry,
