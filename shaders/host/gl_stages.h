@@ -62,7 +62,8 @@ class GlStages {
   void bindCells(const TickTables& tick) const;
   void drawBodies(const TickTables& tick, int i);
   void search(const TickTables& tick, int i);
-  void flood(const TickTables& tick, int i, std::int64_t arguments);
+  void dispatchWholes(const TickTables& tick, int i, int round);
+  void flood(const TickTables& tick, int i, int round);
   void displaceRound(const TickTables& tick, int i, int round);
   void flow(const TickTables& tick, int i);
   void sweepPlain(const TickTables& tick, int first_step);
