@@ -82,6 +82,8 @@ void GlStages::dispatchWholes(const TickTables& tick, int i, int round) {
 void GlStages::flood(const TickTables& tick, int i, int round) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   const std::vector<int> steps = floodSteps(tick.parameters.nearest, step.longest_side);
+  constexpr std::int64_t kPassBytes = 8;  // per domain cell: what it knows, in and out
+  if (round == 0) domain_bytes_ += std::int64_t(steps.size()) * step.domain_cells * kPassBytes;
   // So that the last pass writes targets.
   const GrowingBuffer* known = steps.size() % 2 == 0 ? &target_ : &flood_;
   const GrowingBuffer* next = known == &flood_ ? &target_ : &flood_;
@@ -137,6 +139,8 @@ void GlStages::flow(const TickTables& tick, int i) {
   nearest_row_.bind(rules::kBindNearer);  // which nobody reads any more
   offered_.bind(rules::kBindOffered);
   room_.bind(rules::kBindRoom);
+  constexpr std::int64_t kStepBytes = 48;  // per domain cell: seven planes in one pass, five in the other
+  domain_bytes_ += tick.parameters.displace_iterations * step.domain_cells * kStepBytes;
   int from = 0;
   carried_[from].bind(rules::kBindCarried);
   use(*chosen_.flow_begin);

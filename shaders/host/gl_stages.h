@@ -37,6 +37,8 @@ class GlStages {
 
   std::int64_t dispatchCount() const { return dispatch_count_; }  // since it was made
   std::int64_t deviceBytes() const;
+  /// What flooding and iterative displacement read and write in this tick where bodies penetrate, in first rounds.
+  std::int64_t domainBytes() const { return domain_bytes_; }
 
   // Where results lie on the device.
   GLuint tables() const { return upload_.name(); }
@@ -75,6 +77,7 @@ class GlStages {
   RelaxSchedule schedule_;
   bool skip_settled_;
   std::int64_t dispatch_count_ = 0;
+  std::int64_t domain_bytes_ = 0;
   int current_ = 0;  // which of height_ holds the heights
   GlPrograms programs_;
   TickPrograms chosen_;  // by the present tick
