@@ -4,10 +4,16 @@
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
 #include "shaders/host/gl_context.h"
+#include "shaders/host/shader_loader.h"
 #include "tests/gl_cases.h"
 #include "tests/scenes.h"
 
@@ -15,6 +21,16 @@ namespace spoor::test {
 namespace {
 
 using Ticks = std::vector<std::vector<Pose>>;
+using Changes = std::map<std::size_t, Parameters>;  // by index of the tick from which on they hold
+
+std::optional<Parameters> changeAt(const Changes& changes, std::size_t tick) {
+  const auto found = changes.find(tick);
+  return found == changes.end() ? std::nullopt : std::optional(found->second);
+}
+
+Changes changesOf(const RandomWorld& random) {
+  return random.change == SIZE_MAX ? Changes{} : Changes{{random.change, random.changed}};
+}
 
 class GlBackends : public OnEveryBackend {};
 
@@ -32,20 +48,22 @@ void compareResults(const Result<TickResult>& result, const Result<TickResult>& 
   ASSERT_EQ(result->effect.penetrating_cells, expected->effect.penetrating_cells) << tick;
   ASSERT_EQ(result->effect.domain_cells, expected->effect.domain_cells) << tick;
   ASSERT_EQ(result->effect.active_cells, expected->effect.active_cells) << tick;
+  ASSERT_EQ(result->effect.kept_back, expected->effect.kept_back) << tick;
 }
 
 /// Runs ticks on both and compares all that they tell.
-void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks) {
-  for (const auto& poses : ticks) {
-    const auto expected = native.step(poses);
-    ASSERT_NO_FATAL_FAILURE(compareResults(simulation.step(poses), expected));
+void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {}) {
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const auto expected = native.step(ticks[i], changeAt(changes, i));
+    ASSERT_NO_FATAL_FAILURE(compareResults(simulation.step(ticks[i], changeAt(changes, i)), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
 }
 
-void compareWithNative(const BackendCase& backend_case, const World& world, const Ticks& ticks) {
+void compareWithNative(const BackendCase& backend_case, const World& world, const Ticks& ticks,
+                       const Changes& changes = {}) {
   Simulation simulation = world.simulateOn(backend_case), native = world.simulate();
-  compareTicks(simulation, native, ticks);
+  compareTicks(simulation, native, ticks, changes);
 }
 
 /// A backend of its own. Throws as borrowBackend does.
@@ -72,7 +90,7 @@ TEST_P(GlBackends, RandomWorldsHaveNativesHashesChangesAndCounts) {
     RandomWorld random = randomWorld(seed, 10);
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
-    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks));
+    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks, changesOf(random)));
   }
 }
 
@@ -291,14 +309,14 @@ TEST_P(GlBackends, APoolThatHoldsAllSaysNothing) {
 }
 
 /// Begins every tick before the one before it is finished.
-void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks) {
-  ASSERT_TRUE(simulation.begin(ticks[0]));
+void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {}) {
+  ASSERT_TRUE(simulation.begin(ticks[0], changeAt(changes, 0)));
   for (std::size_t i = 1; i <= ticks.size(); ++i) {
     if (i < ticks.size()) {
-      const Status begun = simulation.begin(ticks[i]);
+      const Status begun = simulation.begin(ticks[i], changeAt(changes, i));
       ASSERT_TRUE(begun) << begun.error();
     }
-    const auto expected = native.step(ticks[i - 1]);
+    const auto expected = native.step(ticks[i - 1], changeAt(changes, i - 1));
     ASSERT_NO_FATAL_FAILURE(compareResults(simulation.finish(), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
@@ -313,7 +331,7 @@ TEST_P(OverlappedTicks, EqualTicksOneByOne) {
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
     Simulation simulation = world.simulateOn(GetParam()), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks));
+    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks, changesOf(random)));
   }
 }
 
@@ -337,6 +355,33 @@ TEST_P(GlBackends, OverlappedTicksInASmallPoolEqualTicksOneByOne) {
   compareOverlapped(simulation, native, trip.ticks);
 }
 
+TEST_P(GlBackends, CompactionThatBeginsAndEndsInOverlappedTicksInASmallPool) {
+  const RoundTrip trip;
+  Parameters compacting = trip.world.pack.parameters, not_compacting = compacting;
+  compacting.compression_q16 = kOneQ16 / 3;
+  compacting.compaction_limit_q16 = kOneQ16 / 4;
+  const Changes changes = {{1, compacting}, {3, not_compacting}, {4, compacting}};
+  for (const int pool_tiles : {2, 1 << 16}) {
+    SCOPED_TRACE(std::to_string(pool_tiles) + " tiles");
+    GlOptions options = glOptionsOf(GetParam());
+    options.pool_tiles = pool_tiles;
+    Simulation simulation(trip.world.base, trip.world.id, makeBackend(options)), native = trip.world.simulate();
+    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, trip.ticks, changes));
+    EXPECT_GT(simulation.state().ledger.compacted, 0);
+  }
+}
+
+TEST_P(GlBackends, LargeFloodsAndLaterRoundsOverTheWholeWorld) {
+  ScenePack pack = noisePack(300, 260, 14, -3000, 3000, 20000);
+  pack.parameters.active_areas = 0;
+  pack.parameters.nearest = NearestSearch::jump_flooding_plus_1;
+  pack.parameters.sweeps_per_tick = 1;
+  addBody(pack, wedgeMesh(120000, 160000, 12000), 110000, 130000, 3000);
+  addBody(pack, archMesh(60000, 50000, 20000), 230000, 120000, 4000);
+  const World world(std::move(pack));
+  compareWithNative(GetParam(), world, drive(initialPoses(world), 2, 800, 300, -200));
+}
+
 TEST_P(GlBackends, AnyThreadMayRunATick) {
   RandomWorld random = randomWorld(26, 9);
   const World world(std::move(random.pack));
@@ -351,6 +396,25 @@ TEST_P(GlBackends, AnyThreadMayRunATick) {
       compareTicks(simulation, native, part);
     ASSERT_FALSE(HasFatalFailure());
   }
+}
+
+TEST_P(GlBackends, AMethodWhoseShaderDoesNotCompileFailsTheTickThatWantsItAndNoOther) {
+  namespace fs = std::filesystem;
+  const fs::path copy = fs::path(::testing::TempDir()) / ("spoor-shaders-" + GetParam().name);
+  fs::remove_all(copy);
+  fs::copy(shaderFolder(), copy, fs::copy_options::recursive);
+  std::ofstream(copy / "sim" / "flood_pass.comp") << "#version 450 core\nvoid main() { nonsense }\n";
+  ASSERT_EQ(setenv("SPOOR_SHADERS", copy.c_str(), 1), 0);
+  const RoundTrip trip;
+  Simulation simulation(trip.world.base, trip.world.id, makeBackend(glOptionsOf(GetParam())));
+  EXPECT_TRUE(simulation.step(trip.ticks[0]));
+  Parameters flooding = trip.world.pack.parameters;
+  flooding.nearest = NearestSearch::jump_flooding;
+  const auto failed = simulation.step(trip.ticks[1], flooding);
+  unsetenv("SPOOR_SHADERS");
+  fs::remove_all(copy);
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().find("flood_pass.comp:2"), std::string::npos) << failed.error();
 }
 
 TEST_P(GlBackends, TwoBackendsInOneThreadDoNotMeet) {

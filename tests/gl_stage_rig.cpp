@@ -102,7 +102,8 @@ class GlStageRig final : public StageRig {
   }
 
   void penetration() override {
-    if (penetrated_) restart(tileHeights(), tileUndersides(), tileCompacted());  // the lists of a sub-step are made once
+    if (penetrated_)
+      restart(tileHeights(), tileUndersides(), tileCompacted());  // the lists of a sub-step are made once
     penetrated_ = true;
     const CurrentContext current(*device_->context);
     device_->stages.penetration(tables_, 0);

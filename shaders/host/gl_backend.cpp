@@ -24,9 +24,23 @@ constexpr std::int64_t kPenetrationBytes = 20;  // per domain cell: depth lowers
 constexpr std::int64_t kNearestBytes = 20;   // per penetrating cell: nearest row out and in, overlap in, target out, in
 constexpr std::int64_t kDisplaceBytes = 48;  // per penetrating cell: target, sums and height, in and out
 constexpr std::int64_t kSlabPairs = rules::kSlabRows * rules::kTileSize / 2;
-constexpr std::int64_t kPairBytes = 24;           // two heights in and out, two bedrocks in
-constexpr std::int64_t kFusedPairBytes = 24 / 4;  // a fused sweep reads and writes a cell once, for its four pairs
-constexpr std::int64_t kHashBytes = 8;            // per active cell: compare with the pool
+constexpr std::int64_t kCompactionBytes = 16;  // per active cell: compacted soil in and out, and compared with the pool
+constexpr std::int64_t kHashBytes = 8;         // per active cell: compare with the pool
+
+/// Bytes of the relaxation for each pair of cells visited.
+std::int64_t pairBytes(SlopeRule rule, RelaxSchedule schedule) {
+  switch (rule) {
+    case SlopeRule::exchange:  // two heights in and out, two bedrocks in; fused, a cell once for its four pairs
+      return schedule == RelaxSchedule::fused ? 24 / 4 : 24;
+    case SlopeRule::flux:
+      return 16 / 4;  // per cell: height, bedrock, underside in, new height out
+    case SlopeRule::interleaved:
+      return 32 / 4;  // per cell: the same twice but bedrock, amounts out and in
+    case SlopeRule::scatter:
+      return 24 / 4;  // per cell: as flux, with the new height in too and another 0 out
+  }
+  return 0;
+}
 
 const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
 
@@ -145,6 +159,7 @@ class GlBackend final : public Backend {
     submitted_.reset();
     uncollected_.clear();
     loaded_ = nullptr;
+    highest_ = -rules::kHeightLimit;  // the pool sees every tile of the next state
   }
 
   BackendMemory memory() const override {
@@ -217,6 +232,7 @@ class GlBackend final : public Backend {
     }
     stages.hash(tables, device_->tiles);
     clock.end(Stage::hash);
+    tick.effect.bytes_moved = stages.domainBytes();
     tick.effect.dispatches = stages.dispatchCount() - dispatched_before;
     tick.effect.bytes_to_device = device_->tiles.copiedBytes() - copied_before + std::int64_t(tables.bytes.size());
 
@@ -307,6 +323,7 @@ class GlBackend final : public Backend {
   void fillIn(const TickPlan& plan, std::int64_t tile_count, TickEffect& effect) const {
     effect.active_cells = tile_count * rules::kTileCells;
     effect.penetrating_cells = head_.penetrating_cells;
+    if (head_.penetrating_cells == 0) effect.bytes_moved = 0;  // else what whole domains were read and written for
     effect.kept_back = std::int64_t(std::uint64_t(head_.kept_back_high) << 32 | head_.kept_back_low);
     effect.pairs_visited = head_.slabs_visited * kSlabPairs;
     if (plan.parameters.slopes != SlopeRule::exchange) {
@@ -314,10 +331,11 @@ class GlBackend final : public Backend {
       for (const SubStep& sub_step : plan.sub_steps)
         effect.pairs_visited += sub_step.sweep_count * 4 * effect.active_cells;
     }
-    effect.relax_bytes = effect.pairs_visited * (schedule_ == RelaxSchedule::fused ? kFusedPairBytes : kPairBytes);
-    effect.bytes_moved = effect.relax_bytes + effect.active_cells * (kGatherBytes + kHashBytes) +
-                         effect.domain_cells * (kCoverBytes + kPenetrationBytes) +
-                         effect.penetrating_cells * (kNearestBytes + kDisplaceBytes);
+    effect.relax_bytes = effect.pairs_visited * pairBytes(plan.parameters.slopes, schedule_);
+    effect.bytes_moved += effect.relax_bytes + effect.active_cells * (kGatherBytes + kHashBytes) +
+                          effect.domain_cells * (kCoverBytes + kPenetrationBytes) +
+                          effect.penetrating_cells * (kNearestBytes + kDisplaceBytes);
+    if (compactsIn(plan)) effect.bytes_moved += effect.active_cells * kCompactionBytes;
     effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
   }
 

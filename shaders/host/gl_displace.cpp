@@ -51,7 +51,7 @@ void GlStages::nearest(const TickTables& tick, int i) {
   if (tick.parameters.nearest == NearestSearch::exact)
     search(tick, i);
   else
-    flood(tick, i, step.domain_blocks.arguments);
+    flood(tick, i, 0);
 }
 
 void GlStages::search(const TickTables& tick, int i) {
@@ -72,26 +72,32 @@ void GlStages::search(const TickTables& tick, int i) {
   }
 }
 
-/// @param arguments  of the dispatch over the domains' blocks
-void GlStages::flood(const TickTables& tick, int i, std::int64_t arguments) {
+/// Runs a program over whole domains, where a round has soil to displace.
+void GlStages::dispatchWholes(const TickTables& tick, int i, int round) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
+  setUniform(0, step.domain_blocks.count);
+  bindTable(rules::kBindBlocks, step.domain_blocks.blocks);
+  dispatchListed(listOffset(tick, step.first_list + round, offsetof(rules::RoundLists, wholes)));
+}
+
+void GlStages::flood(const TickTables& tick, int i, int round) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   const std::vector<int> steps = floodSteps(tick.parameters.nearest, step.longest_side);
+  constexpr std::int64_t kPassBytes = 8;  // per domain cell: what it knows, in and out
+  if (round == 0) domain_bytes_ += std::int64_t(steps.size()) * step.domain_cells * kPassBytes;
   // So that the last pass writes targets.
   const GrowingBuffer* known = steps.size() % 2 == 0 ? &target_ : &flood_;
   const GrowingBuffer* next = known == &flood_ ? &target_ : &flood_;
-  bindTable(rules::kBindBlocks, step.domain_blocks.blocks);
   known->bind(rules::kBindNextKnown);
   use(*chosen_.flood_begin);
-  setUniform(0, step.domain_blocks.count);
-  dispatchListed(arguments);
+  dispatchWholes(tick, i, round);
   use(*chosen_.flood_pass);
-  setUniform(0, step.domain_blocks.count);
   for (std::size_t pass = 0; pass < steps.size(); ++pass) {
     known->bind(rules::kBindKnown);
     next->bind(rules::kBindNextKnown);
     setUniform(2, steps[pass]);
     setUniform(3, pass + 1 == steps.size() ? 1 : 0);
-    dispatchListed(arguments);
+    dispatchWholes(tick, i, round);
     std::swap(known, next);
   }
 }
@@ -107,7 +113,7 @@ void GlStages::displaceRound(const TickTables& tick, int i, int round) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
   const int list = step.first_list + round;
   const bool flooded = tick.parameters.nearest != NearestSearch::exact;
-  if (round > 0 && flooded) flood(tick, i, listOffset(tick, list, offsetof(rules::RoundLists, floods)));
+  if (round > 0 && flooded) flood(tick, i, round);
   const std::int64_t rows = listOffset(tick, list, offsetof(rules::RoundLists, rows));
   target_.bind(rules::kBindTarget);
   nearest_row_.bind(rules::kBindNearestRow);
@@ -130,28 +136,29 @@ void GlStages::displaceRound(const TickTables& tick, int i, int round) {
 
 void GlStages::flow(const TickTables& tick, int i) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  bindTable(rules::kBindBlocks, step.domain_blocks.blocks);
   target_.bind(rules::kBindTarget);
   nearest_row_.bind(rules::kBindNearer);  // which nobody reads any more
   offered_.bind(rules::kBindOffered);
   room_.bind(rules::kBindRoom);
+  constexpr std::int64_t kStepBytes = 48;  // per domain cell: seven planes in one pass, five in the other
+  domain_bytes_ += tick.parameters.displace_iterations * step.domain_cells * kStepBytes;
   int from = 0;
   carried_[from].bind(rules::kBindCarried);
   use(*chosen_.flow_begin);
-  dispatch(step.domain_blocks);
+  dispatchWholes(tick, i, 0);
   for (int iteration = 0; iteration < tick.parameters.displace_iterations; ++iteration) {
     carried_[from].bind(rules::kBindCarried);
     carried_[1 - from].bind(rules::kBindNextCarried);
     use(*chosen_.flow_offer);
-    dispatch(step.domain_blocks);
+    dispatchWholes(tick, i, 0);
     use(*chosen_.flow_move);
-    dispatch(step.domain_blocks);
+    dispatchWholes(tick, i, 0);
     from = 1 - from;
   }
   carried_[from].bind(rules::kBindCarried);
   use(*chosen_.flow_end);
   setUniform(2, step.first_step);
-  dispatch(step.domain_blocks);
+  dispatchWholes(tick, i, 0);
 }
 
 }  // namespace spoor

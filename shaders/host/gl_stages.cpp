@@ -67,6 +67,7 @@ Status GlStages::load(const MeshTable& meshes) {
 
 Status GlStages::begin(const TickTables& tick) {
   current_ = 0;
+  domain_bytes_ = 0;
   try {
     chosen_ = programs_.choose(tick.parameters);
   } catch (const std::runtime_error& error) {

@@ -39,6 +39,8 @@ class GlStages {
 
   std::int64_t dispatchCount() const { return dispatch_count_; }  // since it was made
   std::vector<BufferBytes> buffers() const;
+  /// What flooding and iterative displacement read and write in this tick where bodies penetrate, in first rounds.
+  std::int64_t domainBytes() const { return domain_bytes_; }
 
   // Where results lie on the device.
   GLuint tables() const { return upload_.name(); }
@@ -64,7 +66,8 @@ class GlStages {
   void bindCells(const TickTables& tick) const;
   void drawBodies(const TickTables& tick, int i);
   void search(const TickTables& tick, int i);
-  void flood(const TickTables& tick, int i, std::int64_t arguments);
+  void dispatchWholes(const TickTables& tick, int i, int round);
+  void flood(const TickTables& tick, int i, int round);
   void displaceRound(const TickTables& tick, int i, int round);
   void flow(const TickTables& tick, int i);
   void sweepPlain(const TickTables& tick, int first_step);
@@ -76,6 +79,7 @@ class GlStages {
   RelaxSchedule schedule_;
   bool skip_settled_;
   std::int64_t dispatch_count_ = 0;
+  std::int64_t domain_bytes_ = 0;
   int current_ = 0;  // which of height_ holds the heights
   GlPrograms programs_;
   TickPrograms chosen_;  // by the present tick

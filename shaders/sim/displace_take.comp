@@ -40,7 +40,7 @@ int takeFrom(DomainEntry domain, TileGrid grid, int cell, int target_cell) {
 void beginNextRound() {
   lists[list + 1].rows.used = lists[list].rows.used;
   lists[list + 1].rows.y = lists[list].rows.y;
-  lists[list + 1].floods.y = lists[list + 1].floods.used;
+  lists[list + 1].wholes.y = lists[list + 1].wholes.used;
 }
 
 void main() {

@@ -78,5 +78,7 @@ void main() {
     if (penetrating != 0) atomicAdd(penetrating_in_group, penetrating);
   }
   barrier();
-  if (lane() == 0 && penetrating_in_group != 0) atomicAdd(tick.penetrating_cells, penetrating_in_group);
+  if (lane() != 0 || penetrating_in_group == 0) return;
+  atomicAdd(tick.penetrating_cells, penetrating_in_group);
+  lists[list].wholes.y = lists[list].wholes.used;
 }

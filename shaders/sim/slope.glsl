@@ -24,9 +24,27 @@ struct Row {
   ivec3 room;
 };
 
+/// Slabs that hold three cells of a row: their tiles, and whether bodies may stand over them.
+struct Slabs {
+  ivec3 tiles;  // -1: not active
+  bvec3 beneath;
+};
+
 int tile, first_y;  // of the lane
 ivec3 columns;      // x - 1, x and x + 1, each in its tile
-ivec3 tiles_below, tiles_beside, tiles_above;
+Slabs slabs_below, slabs_beside, slabs_above;
+
+/// @param y  in the lane's tile, or beyond it
+Slabs slabsAt(ivec3 across, int y) {
+  int first = (y < 0 ? 0 : y < kTileSize ? 1 : 2) * 3;
+  int slab = (y & (kTileSize - 1)) / kSlabRows;
+  Slabs slabs;
+  for (int i = 0; i < 3; ++i) {
+    slabs.tiles[i] = tiles[tile].neighbour[first + across[i]];
+    slabs.beneath[i] = SPOOR_BENEATH != 0 && tile_states[max(slabs.tiles[i], 0)].ceiling[slab] < kNoUnderside;
+  }
+  return slabs;
+}
 
 /// False where the lane has nothing to do.
 bool beginColumn() {
@@ -37,28 +55,25 @@ bool beginColumn() {
   first_y = id / kTileSize % kSlabs * kSlabRows;
   columns = ivec3(x + kTileSize - 1, x, x + 1) % kTileSize;
   ivec3 across = ivec3(x == 0 ? 0 : 1, 1, x == kTileSize - 1 ? 2 : 1);
-  for (int i = 0; i < 3; ++i) {
-    tiles_below[i] = tiles[tile].neighbour[across[i]];
-    tiles_beside[i] = tiles[tile].neighbour[3 + across[i]];
-    tiles_above[i] = tiles[tile].neighbour[6 + across[i]];
-  }
+  slabs_below = slabsAt(across, first_y - 1);
+  slabs_beside = slabsAt(across, first_y);
+  slabs_above = slabsAt(across, first_y + kSlabRows);
   return true;
 }
 
-/// Row y of the lane's tile, or one beyond it.
+/// Row y of the lane's slab, or one beyond it.
 Row rowAt(int y) {
-  ivec3 in_tiles = tiles_beside;
-  if (y < 0) in_tiles = tiles_below;
-  if (y >= kTileSize) in_tiles = tiles_above;
+  Slabs slabs = slabs_beside;
+  if (y < first_y) slabs = slabs_below;
+  if (y >= first_y + kSlabRows) slabs = slabs_above;
   int local_y = y & (kTileSize - 1);
   Row row;
   for (int i = 0; i < 3; ++i) {
-    int in_tile = max(in_tiles[i], 0);
-    int at = in_tile * kTileCells + local_y * kTileSize + columns[i];
+    bool is_active = slabs.tiles[i] >= 0;
+    int at = max(slabs.tiles[i], 0) * kTileCells + local_y * kTileSize + columns[i];
     int cell = height[at];
     int under = kNoUnderside;
-    if (SPOOR_BENEATH != 0 && tile_states[in_tile].ceiling[local_y / kSlabRows] < kNoUnderside) under = underside[at];
-    bool is_active = in_tiles[i] >= 0;
+    if (slabs.beneath[i]) under = underside[at];
     row.at[i] = is_active ? at : -1;
     row.height[i] = is_active ? cell : 0;
     row.soil[i] = is_active ? cell - bedrock[at] : 0;

@@ -77,7 +77,7 @@ struct RoundLists {
   GroupCount large;      // kBindLarge; in the first round only, as depth comes before it
   GroupCount rows;       // kBindRowChunks; in later rounds the same rows, or none where no soil is left
   GroupCount receivers;  // kBindReceivers
-  GroupCount floods;     // the blocks of the domains; y is 0 until soil is left, then `used`
+  GroupCount wholes;     // all blocks of the domains; y is 0 until there is soil to displace, then `used`
 };
 
 /// The head of the tick's table; RoundLists of all rounds of all sub-steps follow it.
