@@ -159,6 +159,7 @@ class GlBackend final : public Backend {
     submitted_.reset();
     uncollected_.clear();
     loaded_ = nullptr;
+    highest_ = -rules::kHeightLimit;  // the pool sees every tile of the next state
   }
 
   BackendMemory memory() const override {
