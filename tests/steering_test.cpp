@@ -74,24 +74,24 @@ TEST(Steering, ChangesHoldFromTheirTickOn) {
   const Steered run =
       runSession(world, {.ticks = 20,
                          .changes = {changeOf("12:capacityRounds=1"), changeOf("5:slopeThreshold=0.5,roughness=0.5"),
-                                     changeOf("12:capacityRounds=2"), changeOf("30:capacityRounds=9")}});
+                                     changeOf("12:capacityRounds=3"), changeOf("30:capacityRounds=9")}});
   ASSERT_EQ(run.changes.size(), 2u);
   const Parameters& five = run.changes.at(5);
   EXPECT_EQ(five.slope_threshold_q, 500);
   EXPECT_EQ(five.roughness_q16, 32768);
   EXPECT_EQ(five.capacity_rounds, world.pack.parameters.capacity_rounds);
-  EXPECT_EQ(run.changes.at(12).capacity_rounds, 2) << "of one tick, the last given counts";
+  EXPECT_EQ(run.changes.at(12).capacity_rounds, 3) << "of one tick, the last given counts";
   EXPECT_EQ(run.changes.at(12).slope_threshold_q, 500) << "what was changed stays";
   EXPECT_EQ(run.parameters, run.changes.at(12));
   EXPECT_EQ(run.ticks, 20);
   EXPECT_NE(run.hash, plain.hash);
   EXPECT_TRUE(anyHas(run.said, "tick 5: roughness 1 -> 0.5, slopeThreshold ")) << run.said[0];
-  EXPECT_TRUE(anyHas(run.said, "tick 12: capacityRounds 4 -> 2"));
+  EXPECT_TRUE(anyHas(run.said, "tick 12: capacityRounds 2 -> 3"));
 }
 
 TEST(Steering, WhatIsSoAlreadyIsNoChange) {
   const World world(drivePack());
-  const Steered run = runSession(world, {.ticks = 8, .changes = {changeOf("3:capacityRounds=4")}});
+  const Steered run = runSession(world, {.ticks = 8, .changes = {changeOf("3:capacityRounds=2")}});
   EXPECT_TRUE(run.changes.empty());
   EXPECT_EQ(run.hash, runSession(world, {.ticks = 8}).hash);
   EXPECT_TRUE(anyHas(run.said, "tick 3: the parameters are so already"));

@@ -205,7 +205,7 @@ void runDepth(const NativeContext& context, const SubStep& sub_step) {
 void runStood(const NativeContext& context, const SubStep& stood) {
   const std::vector<DrawOrder> orders = ordersOf(context, stood);
   for (const Domain& domain : stood.domains) drawDomains(context, stood, orders, {&domain, 1});
-  findLowest(context);
+  if (context.parameters.frustum_height_q > 0) findLowest(context);  // for what it hides; nobody asks for the lowest
 }
 
 }  // namespace spoor

@@ -56,7 +56,7 @@ struct Parameters {
   std::int32_t obstacle_threshold_q = 0;  // a body this near above the ground takes no soil beneath it, >= 0
   std::int32_t penetration_divider_q = 1000;  // spread: one target for each of this much overlap, >= 1
   std::int32_t spread_cells = 16;             // spread: targets at most, and how far the search domain grows, 1 .. 64
-  std::int32_t capacity_rounds = 4;      // direct and spread: how often soil that found no room looks for the next free
+  std::int32_t capacity_rounds = 2;      // direct and spread: how often soil that found no room looks for the next free
                                          // cell, counting the first, 1 .. 16
   std::int32_t active_margin_cells = 0;  // by how much a body's active area exceeds its search domain, 0 .. 4096
                                          // [activeAreaMargin]
