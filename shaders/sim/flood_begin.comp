@@ -1,5 +1,5 @@
 // Stage nearest by jump flooding, first pass: free cells know themselves, others nothing.
-// In: blocks, overlap. Out: next known. A lane takes 32 cells of a column. Twin: nearest.cpp.
+// In: blocks, overlap. Out: next known. A lane takes 32 cells of a column. Twin: nearest_flood.cpp.
 #version 450 core
 #include "domain_column.glsl"
 #include "flood.glsl"

@@ -1,5 +1,5 @@
 // Stage nearest by jump flooding, a pass: every cell looks at what the eight cells `stride` away know.
-// In: blocks, known. Out: next known. A lane takes 32 cells of a column. Twin: nearest.cpp.
+// In: blocks, known. Out: next known. A lane takes 32 cells of a column. Twin: nearest_flood.cpp.
 #version 450 core
 #include "../rules/flood.h"
 #include "domain_column.glsl"

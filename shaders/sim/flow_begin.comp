@@ -1,5 +1,6 @@
 // Stage displace, iterative, before the first step: what each cell carries, and which neighbours are nearer to a free
-// cell. In: blocks, overlap, target. Out: nearer, carried. A lane takes 32 cells of a column. Twin: displace.cpp.
+// cell. In: blocks, overlap, target. Out: nearer, carried. A lane takes 32 cells of a column.
+// Twin: displace_iterative.cpp.
 #version 450 core
 #include "../rules/nearest.h"
 #include "domain_column.glsl"

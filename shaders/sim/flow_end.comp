@@ -1,6 +1,6 @@
 // Stage displace, iterative, after the last step: what a cell carries lies on it.
 // In: blocks, overlap, carried. In and out: height, tick.highest. Out: tile states, tick. A lane takes 32 cells of a
-// column. Twin: displace.cpp.
+// column. Twin: displace_iterative.cpp.
 #version 450 core
 #include "domain_column.glsl"
 #include "kept_back.glsl"

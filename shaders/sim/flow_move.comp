@@ -1,6 +1,6 @@
 // Stage displace, iterative, second half of a step: every cell loses what its neighbours grant it and gains what it
 // grants. In: blocks, nearer, carried, offered, room. Out: next carried. A lane takes 32 cells of a column.
-// Twin: displace.cpp.
+// Twin: displace_iterative.cpp.
 #version 450 core
 #include "../rules/flow.h"
 #include "domain_column.glsl"

@@ -1,6 +1,6 @@
 // Stage displace, iterative, first half of a step: what a cell is offered in all, and what it can take.
 // In: blocks, nearer, carried, overlap, height, underside. Out: offered, room. A lane takes 32 cells of a column.
-// Twin: displace.cpp.
+// Twin: displace_iterative.cpp.
 #version 450 core
 #include "../rules/flow.h"
 #include "domain_column.glsl"

@@ -1,5 +1,5 @@
 // Stage relax, interleaved, first pass of a sweep: what each cell gives each neighbour that it gives to.
-// In: tiles, tile states, height, bedrock, underside. Out: amounts. A lane takes a column of a slab. Twin: relax.cpp.
+// In: tiles, tile states, height, bedrock, underside. Out: amounts. A lane takes a column of a slab. Twin: slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 

@@ -1,6 +1,6 @@
 // Stage relax, flux: a sweep in one pass, in which every cell finds the flows over its eight edges.
 // In: tiles, tile states, height, bedrock, underside. Out: next height. A lane takes a column of a slab.
-// Twin: relax.cpp.
+// Twin: slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 

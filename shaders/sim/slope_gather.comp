@@ -1,6 +1,6 @@
 // Stage relax, interleaved, second pass of a sweep: every cell loses what it gives and gains what it is given.
 // In: tiles, tile states, height, underside, amounts. Out: next height. A lane takes a column of a slab.
-// Twin: relax.cpp.
+// Twin: slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 

@@ -1,7 +1,7 @@
 // Stage relax, scatter: a sweep in one pass. Every cell adds itself, less what it gives, to its place in the next
 // plane, and what it gives to its neighbours' places. In: tiles, tile states, height, bedrock, underside. In and out:
 // next height, which is 0 before. Out: spare height, which is 0 afterwards. A lane takes a column of a slab. Twin:
-// relax.cpp.
+// slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 
