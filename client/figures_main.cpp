@@ -16,6 +16,7 @@
 #include "shaders/host/gl_context.h"
 #include "shaders/host/make_backend.h"
 #include "shared/base/options.h"
+#include "shared/base/statistics.h"
 
 namespace spoor {
 
@@ -32,6 +33,7 @@ struct Arguments {
   bool everything_active = false;
   bool no_bodies = false;
   std::int64_t range_mm = 0;
+  std::int64_t frame_count = 0;
   double sun_deg = RenderSettings().sun_elevation_deg;
   BackendChoice backend;
   PictureArguments picture;
@@ -107,6 +109,24 @@ Camera cameraFor(const std::string& look, const TerrainView& view, const RenderS
   return trailsView(view, settings.sun_azimuth_deg);
 }
 
+/// Runs and draws some ticks more and says what a picture takes.
+Status timeFrames(FigureScene& scene, Renderer& renderer, const Camera& camera, std::int32_t tick, int frame_count) {
+  std::vector<double> heights_ms, normals_ms, draw_ms;
+  for (int frame = 1; frame <= frame_count; ++frame) {
+    if (const Status run = scene.runTo(tick + frame); !run) return run;
+    renderer.tilesChanged(scene.activeTiles());
+    FrameTimes times;
+    renderer.draw(scene.view(), camera, &times);
+    heights_ms.push_back(times.heights_ms);
+    normals_ms.push_back(times.normals_ms);
+    draw_ms.push_back(times.draw_ms);
+  }
+  fmt::print("medians of {} pictures of {} x {}: normals {:.3f} ms, copy of heights {:.3f} ms, drawing {:.3f} ms\n",
+             frame_count, renderer.settings().width_px, renderer.settings().height_px, percentile(normals_ms, 0.5),
+             percentile(heights_ms, 0.5), percentile(draw_ms, 0.5));
+  return {};
+}
+
 Status drawPack(const Arguments& arguments, RenderSettings settings) {
   auto pack = readPack(arguments.pack);
   if (!pack) return Error{pack.error()};
@@ -130,7 +150,10 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
   if (arguments.highlight) renderer.highlightTiles(scene.activeTiles());
   renderer.draw(scene.view(), cameraFor(arguments.look, scene.view(), settings));
   fmt::print("tick {}, {} tiles simulated in it\n", tick, scene.activeTiles().size());
-  return writePicture(renderer, arguments, name);
+  if (const Status written = writePicture(renderer, arguments, name); !written) return written;
+  if (arguments.frame_count == 0) return {};
+  return timeFrames(scene, renderer, cameraFor(arguments.look, scene.view(), settings), tick,
+                    int(arguments.frame_count));
 }
 
 Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
@@ -167,6 +190,8 @@ int run(int argc, char** argv) {
               &arguments.range_mm, 0, 100000);
   options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show", &arguments.sun_deg, 1.0,
               89.0);
+  options.add("frames", "COUNT", "with --pack: run and draw so many ticks more, and print what a picture takes",
+              &arguments.frame_count, 0, 100000);
   options.addFlag("highlight", "mark the tiles that the last tick simulated", &arguments.highlight);
   options.addFlag("all-active", "simulate all of the terrain in every tick", &arguments.everything_active);
   options.addFlag("no-bodies", "leave the bodies out of the picture", &arguments.no_bodies);

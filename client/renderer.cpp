@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "shaders/host/gl_context.h"
 #include "shaders/host/shader_loader.h"
@@ -142,15 +144,25 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
   glBindBufferBase(GL_UNIFORM_BUFFER, render::kFrameBinding, frame_block_.name());
 }
 
-void Renderer::draw(const TerrainView& view, const Camera& camera) {
+void Renderer::draw(const TerrainView& view, const Camera& camera, FrameTimes* times) {
   SPOOR_ASSERT(&view.base->pack() == pack_ && view.state->poses.size() == pack_->bodies.size());
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   std::ranges::sort(changed_);
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   const glm::ivec2 focus(glm::floor(camera.focus_m / cell_m_));
   const bool as_columns = settings_.shade == Shade::columns;
+  auto last = std::chrono::steady_clock::now();
+  const auto note = [&](double FrameTimes::*part) {
+    if (times == nullptr) return;
+    glFinish();
+    const auto now = std::chrono::steady_clock::now();
+    times->*part = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+  };
   if (!as_columns) {
-    terrain_.update(view, focus, changed_);
+    terrain_.updateHeights(view, focus, changed_);
+    note(&FrameTimes::heights_ms);
+    terrain_.updateRelief();
+    note(&FrameTimes::normals_ms);
     changed_.clear();
   }
 
@@ -174,6 +186,7 @@ void Renderer::draw(const TerrainView& view, const Camera& camera) {
   else
     drawTerrain(frame);
   composePicture();
+  note(&FrameTimes::draw_ms);
   checkGl("drawing");
 }
 

@@ -35,6 +35,13 @@ struct RenderSettings {
   bool bodies = true;  // whether they are drawn
 };
 
+/// Where the time of a picture goes; the card is waited for after each part, so that their sum is more than it takes.
+struct FrameTimes {
+  double heights_ms = 0;  // copying changed heights to the card
+  double normals_ms = 0;  // relief and blur, where heights changed
+  double draw_ms = 0;     // all the rest
+};
+
 /// Draws a world: ground, bodies, sky. Needs a current GL 4.5 context for its whole life. Throws std::runtime_error
 /// where the driver lacks something or a shader is wrong.
 class Renderer {
@@ -49,7 +56,8 @@ class Renderer {
   void highlightTiles(std::span<const TileCoordinate> tiles) { highlight_.set(tiles); }
 
   /// Draws into the renderer's own target. The same view and camera give the same picture, whatever was drawn before.
-  void draw(const TerrainView& view, const Camera& camera);
+  /// @param times  not nullptr: filled in
+  void draw(const TerrainView& view, const Camera& camera, FrameTimes* times = nullptr);
 
   /// Draws at another size from now on.
   void resize(int width_px, int height_px);

@@ -107,12 +107,16 @@ void TerrainLevels::forget() {
   }
 }
 
-void TerrainLevels::update(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed) {
+void TerrainLevels::updateHeights(const TerrainView& view, glm::ivec2 focus_cell,
+                                  std::span<const TileCoordinate> changed) {
   for (int level = 0; level < kLevelCount; ++level) moveWindow(level, focus_cell);
   // Changed tiles first: pages that are loaded below hold the newest heights anyway.
   for (const TileCoordinate at : changed) uploadTile(view, at);
   loadPages(view);
   bind();
+}
+
+void TerrainLevels::updateRelief() {
   for (int level = 0; level < kLevelCount; ++level) makeRelief(level);
 }
 

@@ -52,8 +52,10 @@ class TerrainLevels {
   /// True where every window lies inside the part of the next one that has not begun to turn into a coarser one.
   static bool windowsNest(int fine_pages, int coarse_pages);
 
-  /// Brings the windows to the focus and the textures up to date. `changed`: tiles that differ from the last call's.
-  void update(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed);
+  /// Brings the windows to the focus and their heights up to date. `changed`: tiles that differ from the last call's.
+  void updateHeights(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed);
+  /// And then their relief, where heights changed.
+  void updateRelief();
 
   /// Throws everything away: for a view of another world, or one that went back in time.
   void forget();

@@ -146,7 +146,9 @@ void measureSteps(const Settings& settings, const std::string& table, const char
     for (const auto& run : runs) std::printf("  %s", hashOf(run[engine]).substr(7).c_str());
     std::printf("\n");
   }
-  std::printf("  (normals, copying heights for rendering and drawing are the client's)\n\n");
+  std::printf(
+      "  (normals, copying heights for rendering and drawing are the client's: spoor-figures --pack PACK --frames "
+      "N)\n\n");
 }
 
 void measureStepTables(const Settings& settings, Report& report) {
