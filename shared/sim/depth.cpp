@@ -145,7 +145,7 @@ struct Chunk {
 };
 
 /// Every chunk looks at every primitive of its domain: as few chunks as still share the work out.
-std::vector<Chunk> chunksOf(std::span<const Domain> domains, int thread_count) {
+std::vector<Chunk> chunksOf(const std::vector<Domain>& domains, int thread_count) {
   constexpr int kLeastRows = 16;
   std::vector<Chunk> chunks;
   for (const Domain& domain : domains) {
@@ -157,18 +157,36 @@ std::vector<Chunk> chunksOf(std::span<const Domain> domains, int thread_count) {
   return chunks;
 }
 
-/// Draws a sub-step's bodies into some of its domains, which are disjoint.
-void drawDomains(const NativeContext& context, const SubStep& sub_step, const std::vector<DrawOrder>& orders,
-                 std::span<const Domain> domains) {
-  const std::vector<Chunk> chunks = chunksOf(domains, context.pool.threadCount());
-  context.pool.forEach(int(chunks.size()), [&](int i, int) {
-    const CellBox& box = chunks[i].box;
-    std::vector<std::size_t> row_offset;
-    for (int y = box.y0; y < box.y1; ++y) row_offset.push_back(context.area.offsetAt(box.x0, y));
-    RowTarget target(context, box, row_offset.data());
-    for (const int body : chunks[i].domain->bodies)
-      if (sub_step.bodies[body].box.meets(box)) target.draw(orders[body]);
-  });
+void drawChunk(const NativeContext& context, const SubStep& sub_step, const std::vector<DrawOrder>& orders,
+               const Chunk& chunk) {
+  const CellBox& box = chunk.box;
+  std::vector<std::size_t> row_offset;
+  for (int y = box.y0; y < box.y1; ++y) row_offset.push_back(context.area.offsetAt(box.x0, y));
+  RowTarget target(context, box, row_offset.data());
+  for (const int body : chunk.domain->bodies)
+    if (sub_step.bodies[body].box.meets(box)) target.draw(orders[body]);
+}
+
+/// Draws a sub-step's bodies into its domains, which are disjoint.
+void drawDomains(const NativeContext& context, const SubStep& sub_step, const std::vector<DrawOrder>& orders) {
+  const std::vector<Chunk> chunks = chunksOf(sub_step.domains, context.pool.threadCount());
+  context.pool.forEach(int(chunks.size()), [&](int i, int) { drawChunk(context, sub_step, orders, chunks[i]); });
+}
+
+/// Sorts domains into groups so that those of different groups are disjoint.
+std::vector<std::vector<const Domain*>> groupsOf(std::span<const Domain> domains) {
+  std::vector<std::vector<const Domain*>> groups;
+  for (const Domain& domain : domains) {
+    std::vector<const Domain*> joined{&domain};
+    std::erase_if(groups, [&](const std::vector<const Domain*>& group) {
+      const bool touches =
+          std::ranges::any_of(group, [&](const Domain* other) { return other->box.meets(domain.box); });
+      if (touches) joined.insert(joined.end(), group.begin(), group.end());
+      return touches;
+    });
+    groups.push_back(std::move(joined));
+  }
+  return groups;
 }
 
 std::vector<DrawOrder> ordersOf(const NativeContext& context, const SubStep& sub_step) {
@@ -198,13 +216,19 @@ void findLowest(const NativeContext& context) {
 }  // namespace
 
 void runDepth(const NativeContext& context, const SubStep& sub_step) {
-  drawDomains(context, sub_step, ordersOf(context, sub_step), sub_step.domains);
+  drawDomains(context, sub_step, ordersOf(context, sub_step));
   findLowest(context);
 }
 
 void runStood(const NativeContext& context, const SubStep& stood) {
   const std::vector<DrawOrder> orders = ordersOf(context, stood);
-  for (const Domain& domain : stood.domains) drawDomains(context, stood, orders, {&domain, 1});
+  const auto groups = groupsOf(stood.domains);
+  if (groups.size() == stood.domains.size())
+    drawDomains(context, stood, orders);
+  else
+    context.pool.forEach(int(groups.size()), [&](int i, int) {
+      for (const Domain* domain : groups[i]) drawChunk(context, stood, orders, {domain, domain->box});
+    });
   if (context.parameters.frustum_height_q > 0) findLowest(context);  // for what it hides; nobody asks for the lowest
 }
 
