@@ -129,7 +129,6 @@ ScenePack areasScene(const std::string& name, const PlateSize& plate) {
 
 constexpr double kCarLength_m = 24;
 constexpr std::int32_t kCarDistance_q = 300000;
-constexpr std::int32_t kCarSpeed_q = 488;  // per tick
 
 Parameters thesisParameters() {
   Parameters parameters;
@@ -245,7 +244,7 @@ BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terr
   const std::int32_t side_q = heightmap_size * pack.cell_q;
   for (int car = 0; car < car_count; ++car) {
     const std::int32_t y_q = side_q / 2 + (2 * car - car_count + 1) * kCarDistance_q / 2;
-    pack.paths.push_back({{{side_q / 4, y_q}, {side_q * 3 / 4, y_q}}, kCarSpeed_q, 0, 0});
+    pack.paths.push_back({{{side_q / 4, y_q}, {side_q * 3 / 4, y_q}}, pack.cell_q, 0, 0});
     pack.bodies.push_back(bodyOf(0, {0, 0, 0}, 1500));
     pack.bodies.back().path_index = car;
   }

@@ -39,8 +39,8 @@ inline constexpr std::int64_t kAreasTickLimit = 60;
 
 /// The set-up of the thesis's measurements: cars of 24 m side by side, 30 m apart, drive over dunes of snow. Each has
 /// four wheels' footprints in the soil under a roof that spans the active area that the thesis gives for one car (3774
-/// to 241 591 cells on maps of 512 to 4096 cells a side), so that its search domain is that area. They move 4.88 cm a
-/// tick, a cell of the finest map, for half the map's length, and then rest.
+/// to 241 591 cells on maps of 512 to 4096 cells a side), so that its search domain is that area. They move a cell a
+/// tick, for half the map's length, and then rest.
 /// @param heightmap_size  cells a side
 /// @param terrain_size_m  the same, m
 BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terrain_size_m, int car_count,

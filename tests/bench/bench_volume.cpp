@@ -33,6 +33,7 @@ struct Volume {
   std::string label;
   std::vector<std::int64_t> sum;  // of soil over the whole world, after each printed frame
   std::vector<std::int64_t> compacted;
+  std::int64_t every = 0;
   std::int64_t unequal_ticks = 0;
   std::uint64_t hash = 0;
 };
@@ -45,6 +46,7 @@ Volume runFrames(const BenchScene& scene, const Engine& engine, std::int64_t fra
   Simulation simulation(base, startOf(scene, base), std::move(*backend));
   const std::int64_t before = baseSum(base);
   Volume volume;
+  volume.every = every;
   volume.label = engine.on_gl ? "gl" : "native";
   for (std::int32_t tick = 1; tick <= frame_count; ++tick) {
     auto result = simulation.step(posesOf(scene, script, tick));
@@ -62,40 +64,40 @@ Volume runFrames(const BenchScene& scene, const Engine& engine, std::int64_t fra
   return volume;
 }
 
+bool isSoftware(const Engine& engine) {
+  const auto backend = openEngine(engine);
+  return backend && (*backend)->renderer().find("llvmpipe") != std::string::npos;
+}
+
+void printVolume(const Volume& volume, std::int64_t before, const std::string& name, Report& report) {
+  std::printf("  %-10s %22lld (%s, initial value)\n", "-", static_cast<long long>(before), volume.label.c_str());
+  for (std::size_t i = 0; i < volume.sum.size(); ++i)
+    std::printf("  %-10lld %22lld (of it %lld compacted)\n", static_cast<long long>(volume.every * std::int64_t(i + 1)),
+                static_cast<long long>(volume.sum[i]), static_cast<long long>(volume.compacted[i]));
+  const bool all_equal = volume.unequal_ticks == 0 &&
+                         std::ranges::all_of(volume.sum, [before](std::int64_t sum) { return sum == before; });
+  std::printf("  every tick %s; hash %s\n", all_equal ? "equal" : "NOT EQUAL", hexText(volume.hash).c_str());
+  if (!all_equal) report.faults.push_back(name + ", " + volume.label + ": the volume changed");
+}
+
 void measureWay(const Settings& settings, const char* title, const char* name, const Parameters& parameters,
                 Report& report) {
   BenchScene scene = makeThesisScene(name, 512, 200, 1, parameters);
   scene.pack.paths[0].speed_q_per_tick = 200;  // 100 m in 5000 frames: on its way throughout
   scene.id = packId(encodePack(scene.pack));
   std::fprintf(stderr, "%s ...\n", name);
-  std::vector<Volume> volumes{runFrames(scene, nativeBeside(settings), kFrameCount, kEvery)};
-  std::int64_t every = kEvery;
-  if (settings.engine.on_gl) {
-    auto opened = openEngine(settings.engine);
-    const bool software = opened && (*opened)->renderer().find("llvmpipe") != std::string::npos;
-    opened = Error{};
-    if (software) {
-      every = kSoftwareEvery;
-      volumes = {runFrames(scene, nativeBeside(settings), kSoftwareFrameCount, every)};
-    }
-    volumes.push_back(runFrames(scene, settings.engine, software ? kSoftwareFrameCount : kFrameCount, every));
-  }
   const std::int64_t before = baseSum(BaseTerrain(scene.pack));
-  std::printf("%s\n  %-10s %22lld (initial value)\n", title, "-", static_cast<long long>(before));
-  for (std::size_t i = 0; i < volumes.front().sum.size(); ++i) {
-    std::printf("  %-10lld", static_cast<long long>(every * std::int64_t(i + 1)));
-    for (const Volume& volume : volumes)
-      std::printf(" %22lld (%s, of it %lld compacted)", static_cast<long long>(volume.sum[i]), volume.label.c_str(),
-                  static_cast<long long>(volume.compacted[i]));
-    std::printf("\n");
-  }
-  for (const Volume& volume : volumes) {
-    const bool all_equal = volume.unequal_ticks == 0 &&
-                           std::ranges::all_of(volume.sum, [before](std::int64_t sum) { return sum == before; });
-    std::printf("  %-7s every tick %s; hash %s\n", volume.label.c_str(), all_equal ? "equal" : "NOT EQUAL",
-                hexText(volume.hash).c_str());
-    if (!all_equal) report.faults.push_back(std::string(name) + ", " + volume.label + ": the volume changed");
-    if (volume.hash != volumes.front().hash) report.faults.push_back(std::string(name) + ": hashes differ");
+  std::printf("%s\n", title);
+  const Volume native = runFrames(scene, nativeBeside(settings), kFrameCount, kEvery);
+  printVolume(native, before, name, report);
+  if (settings.engine.on_gl) {
+    const bool software = isSoftware(settings.engine);
+    const Volume beside =
+        software ? runFrames(scene, nativeBeside(settings), kSoftwareFrameCount, kSoftwareEvery) : native;
+    const Volume gl = runFrames(scene, settings.engine, software ? kSoftwareFrameCount : kFrameCount, beside.every);
+    printVolume(gl, before, name, report);
+    std::printf("  native after as many frames: hash %s\n", hexText(beside.hash).c_str());
+    if (gl.hash != beside.hash) report.faults.push_back(std::string(name) + ": hashes differ");
   }
   std::printf("\n");
 }
