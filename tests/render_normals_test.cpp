@@ -8,6 +8,12 @@
 namespace spoor {
 namespace {
 
+void update(TerrainLevels& levels, const TerrainView& view, glm::ivec2 focus_cell,
+            std::span<const TileCoordinate> changed) {
+  levels.updateHeights(view, focus_cell, changed);
+  levels.updateRelief();
+}
+
 using namespace test;
 
 constexpr double kCell_m = 0.05;
@@ -69,7 +75,7 @@ TEST_F(Render, BlurPassesEqualAPlainConvolution) {
   std::vector<float> steepest;
   for (const int passes : {0, 1, 2, 3, 16}) {
     TerrainLevels levels = levelsWith(passes);
-    levels.update(world.view(), kFocus, {});
+    update(levels, world.view(), kFocus, {});
     const auto relief = levels.fineRelief();
     const auto wanted = blurredSlopes(world.view(), levels.windows()[0].window, passes);
     std::size_t wrong = 0;
@@ -88,7 +94,7 @@ TEST_F(Render, ReliefOfAChangedTileIsThatOfAFullRebuild) {
   for (const int passes : {0, 1, 2, 16}) {
     World world = ruttedWorld();
     TerrainLevels levels = levelsWith(passes);
-    levels.update(world.view(), kFocus, {});
+    update(levels, world.view(), kFocus, {});
     const auto before = levels.fineRelief();
     // A tile inside, and one that its neighbour's border changes with it: every cell, to the corners.
     const std::array<TileCoordinate, 2> changed{{{6, 5}, {7, 6}}};
@@ -96,12 +102,12 @@ TEST_F(Render, ReliefOfAChangedTileIsThatOfAFullRebuild) {
       for (int i = 0; i < rules::kTileCells; ++i)
         world.state.tiles.find(tile)->height()[std::size_t(i)] += i * 37 % 900;
     levels.stats = {};
-    levels.update(world.view(), kFocus, changed);
+    update(levels, world.view(), kFocus, changed);
     const TerrainStats after = levels.stats;
     const auto relief = levels.fineRelief();
 
     TerrainLevels fresh = levelsWith(passes);
-    fresh.update(world.view(), kFocus, {});
+    update(fresh, world.view(), kFocus, {});
     EXPECT_EQ(differences(relief, fresh.fineRelief(), 0), 0u) << passes << " passes";
     EXPECT_GT(differences(relief, before, 0), std::size_t(2 * rules::kTileCells)) << passes << " passes";
     // Of the finest level: two boxes that hold what a tile and the reach of all passes make, at most.
@@ -114,11 +120,11 @@ TEST_F(Render, ReliefOfAChangedTileIsThatOfAFullRebuild) {
 TEST_F(Render, ReliefAfterTheWindowMovedIsThatOfAFreshOne) {
   const World world = ruttedWorld();
   TerrainLevels levels = levelsWith(16);
-  levels.update(world.view(), kFocus + 64, {});
-  levels.update(world.view(), kFocus + glm::ivec2(0, -64), {});
-  levels.update(world.view(), kFocus, {});
+  update(levels, world.view(), kFocus + 64, {});
+  update(levels, world.view(), kFocus + glm::ivec2(0, -64), {});
+  update(levels, world.view(), kFocus, {});
   TerrainLevels fresh = levelsWith(16);
-  fresh.update(world.view(), kFocus, {});
+  update(fresh, world.view(), kFocus, {});
   // The rim shows the next level alone.
   EXPECT_EQ(differences(levels.fineRelief(), fresh.fineRelief(), render::kMorphRimSamples - 2), 0u);
 }
