@@ -77,7 +77,7 @@ void Recording::replay(const BaseTerrain& base,
       state.previous_poses = moment.previous_poses;
       for (const auto& [at, saved] : moment.tiles) {
         Tile* tile = state.tiles.find(at);
-        if (tile == nullptr) tile = &state.tiles.insert(makeTile(at, base, moment.tick));
+        if (tile == nullptr) tile = &state.tiles.insert(makeTile(at, {&base, &state.craters}, moment.tick));
         tile->height() = *saved.height;
         tile->ground = saved.ground;
         tile->initial = saved.initial;

@@ -67,7 +67,13 @@ struct Builder {
       putParameters(writer, *message.parameters);
       parameters = out.CreateVector(writer.bytes);
     }
-    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles, parameters));
+    flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> craters;
+    if (!message.craters.empty()) {
+      ByteWriter writer;
+      for (const Crater& crater : message.craters) putCrater(writer, crater);
+      craters = out.CreateVector(writer.bytes);
+    }
+    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles, parameters, craters));
   }
   void operator()(const Confirm& message) { out.Finish(wire::CreateConfirm(out, message.tick, message.state_hash)); }
   void operator()(const Goodbye& message) {
@@ -140,6 +146,12 @@ Result<Message> convert(const wire::TickUpdate& table) {
     ByteReader reader({bytes->data(), bytes->size()});
     update.parameters = getParameters(reader);
     if (!validateParameters(*update.parameters)) return invalid(kind, "a parameter out of range");
+  }
+  if (const auto* bytes = table.craters()) {
+    if (bytes->size() % kCraterBytes != 0 || bytes->size() > kTickCratersLimit * kCraterBytes)
+      return invalid(kind, "craters of a wrong size");
+    ByteReader reader({bytes->data(), bytes->size()});
+    while (reader.left() > 0) update.craters.push_back(getCrater(reader));
   }
   update.poses.reserve(table.poses()->size());
   for (const wire::Pose* pose : *table.poses()) {

@@ -74,7 +74,7 @@ int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
       if (!record) return fail(record.error());
       ended = !*record;
       if (ended) break;
-      if (Status status = simulation.begin((*record)->poses, (*record)->parameters); !status)
+      if (Status status = simulation.begin((*record)->poses, (*record)->parameters, (*record)->craters); !status)
         return fail("tick " + std::to_string((*record)->tick) + ": " + status.error());
       begun.push_back(std::move(**record));
     }

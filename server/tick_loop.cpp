@@ -157,7 +157,8 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     const std::uint64_t hash = result->update.state_hash;
     const auto publish_start = Clock::now();
     if (writer != nullptr)
-      writer->append({tick, result->update.poses, hash, result->ledger, result->update.parameters});
+      writer->append(
+          {tick, result->update.poses, hash, result->ledger, result->update.parameters, result->update.craters});
     if (host != nullptr) host->publish(std::move(result->update));
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
     sayFirsts(figures, *result, tick, say);

@@ -96,7 +96,7 @@ TEST_F(Codec, DifferencesOfEveryWidthSurvive) {
 }
 
 TEST_F(Codec, TheBoxIsTheSmallestThatHoldsTheChange) {
-  const auto tile = makeTile({0, 0}, world_.base, 4);
+  const auto tile = makeTile({0, 0}, {&world_.base}, 4);
   const PlaneCells before = tile->height();
   EXPECT_EQ(differenceOf(*tile, before, nullptr, 2).width, 0);
   tile->height()[std::size_t(5 * 64 + 9)] += 3;
@@ -110,7 +110,7 @@ TEST_F(Codec, TheBoxIsTheSmallestThatHoldsTheChange) {
 TEST_F(Codec, HeightsBelowBedrockAndOutsideTheWorldAreRefusedWhateverTheirHash) {
   // Tile (2, 1) of 150 x 100 cells: column 63 lies outside. Soil is 50 000 deep.
   for (const auto& [cell, change_q, why] : {std::tuple(0, -50001, "below bedrock"), std::tuple(63, 1, "outside")}) {
-    const auto tile = makeTile({2, 1}, world_.base, 1);
+    const auto tile = makeTile({2, 1}, {&world_.base}, 1);
     const PlaneCells before = tile->height();
     tile->height()[std::size_t(cell)] += change_q;
     tile->hash = tileHash(*tile);

@@ -12,7 +12,7 @@ constexpr int kStep_ms = 2;
 constexpr int kTick_ms = 16;
 
 ScenePack smallPack() {
-  ScenePack pack = noisePack(200, 150, 7, -20000, 20000, 50000);
+  ScenePack pack = noisePack(200, 150, 7, -20000, 20000, 10000000);
   addBody(pack, tetrahedronMesh(4000), 50000, 60000, 500);
   addBody(pack, boxMesh(3000, 3000, 3000), 120000, 80000, 0);
   return pack;
@@ -31,19 +31,25 @@ ScriptedSession::ScriptedSession(ScenePack own_pack)
 
 TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) const {
   const Tile* held = state.tiles.find(at);
-  auto tile = makeTile(at, base, tick);
+  auto tile = makeTile(at, {&base}, tick);
   if (held != nullptr) tile->height() = held->height();
   const PlaneCells before = tile->height();
   const std::uint64_t seed = mix64(std::uint64_t(tick) << 32 | std::uint64_t(at.y) << 16 | std::uint64_t(at.x));
-  for (int i = 0; i < rules::kTileCells; ++i) {
-    const std::uint64_t draw = mix64(seed + std::uint64_t(i));
-    const bool inside = at.x * rules::kTileSize + i % rules::kTileSize < pack.width_cells &&
-                        at.y * rules::kTileSize + i / rules::kTileSize < pack.height_cells;
-    std::int32_t& height = tile->height()[std::size_t(i)];
-    if (inside && rough_)
-      height = (*tile->bedrock)[std::size_t(i)] + std::int32_t(draw % 20000000);
-    else if (inside && draw % 50 == 0)
-      height += std::int32_t(draw >> 40) % 100 - 50;
+  // Two cells side by side share their soil out anew: nothing is lost.
+  for (std::size_t i = 0; i < rules::kTileCells; i += 2) {
+    const std::uint64_t draw = mix64(seed + i);
+    const bool inside = at.x * rules::kTileSize + int(i) % rules::kTileSize + 1 < pack.width_cells &&
+                        at.y * rules::kTileSize + int(i) / rules::kTileSize < pack.height_cells;
+    if (!inside || (!rough_ && draw % 25 != 0)) continue;
+    std::int32_t& first = tile->height()[i];
+    std::int32_t& second = tile->height()[i + 1];
+    const std::int64_t soil = std::int64_t(first) - (*tile->bedrock)[i];
+    const std::int64_t other = std::int64_t(second) - (*tile->bedrock)[i + 1];
+    const auto wanted =
+        rough_ ? std::int64_t(draw >> 8) % (soil + other + 1) - soil : std::int64_t(draw >> 40) % 100 - 50;
+    const auto moved_q = std::int32_t(std::clamp(wanted, -soil, other));
+    first += moved_q;
+    second -= moved_q;
   }
   tile->hash = tileHash(*tile);
   tile->wake_mask = tick % 3 == 0 ? 0 : kWakeSelf;

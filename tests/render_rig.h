@@ -70,7 +70,7 @@ inline ScenePack planePack() {
 }
 
 inline void addLiveTile(WorldState& state, const BaseTerrain& base, TileCoordinate at, int rut_depth_q) {
-  Tile& tile = state.tiles.insert(makeTile(at, base, 1));
+  Tile& tile = state.tiles.insert(makeTile(at, {&base}, 1));
   for (int y = 0; y < rules::kTileSize; ++y)
     for (int x = 28; x < 36; ++x) {
       tile.height()[std::size_t(y * rules::kTileSize + x)] -= rut_depth_q;

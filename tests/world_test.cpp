@@ -124,7 +124,7 @@ TEST(TileStore, ATileBecomesLiveAsTheBaseIs) {
   const World world(noisePack(100, 70, 5, -3000, 3000, 250));
   TileStore store;
   EXPECT_EQ(store.find({1, 1}), nullptr);
-  Tile& tile = store.insert(makeTile({1, 1}, world.base, 9));
+  Tile& tile = store.insert(makeTile({1, 1}, {&world.base}, 9));
   EXPECT_EQ(store.find({1, 1}), &tile);
   EXPECT_EQ(tile.version_tick, 9);
   EXPECT_EQ(tile.ground, tile.initial);
@@ -142,7 +142,7 @@ TEST(TileStore, ListsLiveTilesByRowThenColumnAndKnowsWhichAreAwake) {
   const World world(flatPack(300, 300));
   TileStore store;
   for (const TileCoordinate at : {TileCoordinate{3, 0}, {0, 2}, {1, 0}, {4, 1}})
-    store.insert(makeTile(at, world.base, 1));
+    store.insert(makeTile(at, {&world.base}, 1));
   std::vector<TileCoordinate> order;
   for (const Tile* tile : store.sorted()) order.push_back(tile->at);
   EXPECT_EQ(order, (std::vector<TileCoordinate>{{1, 0}, {3, 0}, {4, 1}, {0, 2}}));

@@ -8,6 +8,7 @@
 #define SPOOR_RULES_LANGUAGE_H
 
 #ifdef __cplusplus
+#include <bit>
 #include <cstdint>
 #define RULE static inline
 #define RULE_CONST static constexpr int
@@ -43,6 +44,17 @@ RULE wide wideTimes(wide a, int b) { return a * b; }
 RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
 /// floor(a / 2^30) where that fits an int.
 RULE int wideFromQ30(wide a) { return int(a >> 30); }
+/// Place of the highest bit of a >= 0, -1 for 0.
+RULE int wideTop(wide a) { return int(std::bit_width(std::uint64_t(a))) - 1; }
+/// a * 2^bits, cut off at 64 bits; bits 0..63.
+RULE wide wideUp(wide a, int bits) { return wide(std::uint64_t(a) << bits); }
+/// floor(a / 2^bits); bits 0..63.
+RULE wide wideDown(wide a, int bits) { return a >> bits; }
+
+/// The high word of a * b.
+RULE uint mulHigh(uint a, uint b) { return uint(std::uint64_t(a) * b >> 32); }
+/// Place of the highest bit, -1 for 0.
+RULE int topBit(uint a) { return int(std::bit_width(a)) - 1; }
 
 /// a / count. Ranges: a >= 0, count 1..8. By a reciprocal of 31 + `places` bits, rounded up, which is exact. Branches
 /// would keep loops over it from being vectorised.
@@ -94,12 +106,15 @@ wide wideTimes(wide a, int b) {
   if (b < 0) product.high -= a.low;
   return product;
 }
-/// Place of the highest bit, -1 for 0.
 int wideTop(wide a) { return a.high != 0u ? 32 + findMSB(a.high) : findMSB(a.low); }
-/// Shifts by 0..63 bits.
 wide wideUp(wide a, int bits) {
   if (bits >= 32) return wide(0u, a.low << uint(bits - 32));
   return bits == 0 ? a : wide(a.low << uint(bits), (a.high << uint(bits)) | (a.low >> uint(32 - bits)));
+}
+wide wideDown(wide a, int bits) {
+  uint sign = uint(int(a.high) >> 31);
+  if (bits >= 32) return wide(uint(int(a.high) >> (bits - 32)), sign);
+  return bits == 0 ? a : wide((a.low >> uint(bits)) | (a.high << uint(32 - bits)), uint(int(a.high) >> bits));
 }
 /// Bit by bit, as many as the quotient has.
 wide wideFloorDiv(wide a, wide b) {
@@ -121,6 +136,9 @@ wide wideFloorDiv(wide a, wide b) {
   return wideZero(rest) ? result : wideSub(result, wide(1u, 0u));
 }
 int wideFromQ30(wide a) { return int((a.high << 2) | (a.low >> 30)); }
+
+uint mulHigh(uint a, uint b) { return wideMulUnsigned(a, b).high; }
+int topBit(uint a) { return findMSB(a); }
 
 int dividedByCount(int a, int count) { return a / count; }
 

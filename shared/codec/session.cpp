@@ -13,7 +13,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x53525053;  // "SPRS"
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint8_t kPackRecord = 1;
 constexpr std::uint8_t kTickRecord = 2;
 
@@ -39,6 +39,8 @@ std::vector<std::uint8_t> tickBytes(const TickRecord& record) {
   visitLedger(record.ledger, [&](auto value) { writer.put(value); });
   writer.put(std::uint32_t(record.poses.size()));
   for (const Pose& pose : record.poses) putPose(writer, pose);
+  writer.put(std::uint32_t(record.craters.size()));
+  for (const Crater& crater : record.craters) putCrater(writer, crater);
   if (record.parameters) putParameters(writer, *record.parameters);
   return recordBytes(kTickRecord, writer.bytes);
 }
@@ -182,9 +184,15 @@ Result<std::optional<TickRecord>> SessionReader::next() {
   visitLedger(tick.ledger, [&](auto& value) { value = reader.get<std::int64_t>(); });
   const std::size_t count = reader.get<std::uint32_t>();
   const std::size_t pose_bytes = pack_.bodies.size() * kPoseBytes;
-  if (count != pack_.bodies.size() || (reader.left() != pose_bytes && reader.left() != pose_bytes + kParametersBytes))
+  if (count != pack_.bodies.size() || reader.left() < pose_bytes)
     return Error{where + "tick record does not fit the pack's bodies"};
   for (std::size_t i = 0; i < count; ++i) tick.poses.push_back(getPose(reader));
+  const std::size_t crater_count = reader.get<std::uint32_t>();
+  const std::size_t crater_bytes = crater_count * kCraterBytes;
+  if (reader.failed() || (reader.left() != crater_bytes && reader.left() != crater_bytes + kParametersBytes))
+    return Error{where + "tick record is of a wrong size"};
+  for (std::size_t i = 0; i < crater_count; ++i) tick.craters.push_back(getCrater(reader));
+  if (Status status = validateNewCraters(pack_, tick.craters, 0); !status) return Error{where + status.error()};
   if (reader.left() > 0) {
     tick.parameters = getParameters(reader);
     if (Status status = validateParameters(pack_, *tick.parameters); !status) return Error{where + status.error()};

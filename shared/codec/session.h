@@ -23,6 +23,7 @@ struct TickRecord {
   std::uint64_t state_hash = 0;
   Ledger ledger;
   std::optional<Parameters> parameters = {};  // from this tick on, where they changed
+  std::vector<Crater> craters = {};           // that came with it
 };
 
 /// Appends to a session file from a thread of its own: append() never waits for the disk.

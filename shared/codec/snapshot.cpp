@@ -4,19 +4,46 @@
 #include "shared/world/pose_bytes.h"
 
 namespace spoor {
+namespace {
+
+Status readCraters(ByteReader& reader, const ScenePack& pack, WorldState& state) {
+  const std::size_t count = reader.get<std::uint32_t>();
+  if (count > kCratersLimit || count * kCraterBytes > reader.left())
+    return Error{std::to_string(count) + " craters announced, more than there can be"};
+  std::vector<Crater> craters;
+  craters.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Crater& crater = craters.emplace_back(getCrater(reader));
+    const std::int32_t before = i > 0 ? craters[i - 1].tick : 1;
+    if (crater.id != i || crater.tick < before || crater.tick > state.tick)
+      return Error{"crater " + std::to_string(i) + " is out of order"};
+    if (Status status = validateCrater(pack, crater); !status)
+      return Error{"crater " + std::to_string(i) + ": " + status.error()};
+  }
+  state.craters = CraterSet(pack);
+  state.craters.add(craters);
+  return {};
+}
+
+}  // namespace
 
 std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base) {
   ByteWriter writer;
   writer.put(state.tick);
   writer.put(stateHash(state));
   putParameters(writer, state.parameters);
+  writer.put(state.ledger.craters);
+  writer.put(state.ledger.events);
+  writer.put(std::uint32_t(state.craters.size()));
+  for (const Crater& crater : state.craters.records()) putCrater(writer, crater);
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
   std::vector<TileChange> changes;
   PlaneCells ground;
+  const DormantGround dormant{&base, &state.craters};
   for (const Tile* tile : state.tiles.sorted()) {
-    base.fillHeights(tile->at, ground);
+    dormant.fillHeights(tile->at, ground);
     changes.push_back(differenceOf(*tile, ground, nullptr, kDormantVersion));
   }
   writer.putBytes(encodeTiles(changes));
@@ -30,6 +57,9 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   state.tick = reader.get<std::int32_t>();
   const auto state_hash = reader.get<std::uint64_t>();
   state.parameters = getParameters(reader);
+  const auto crater_budget = reader.get<std::int64_t>();
+  const auto event_budget = reader.get<std::int64_t>();
+  if (Status status = readCraters(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
   if (Status status = validateParameters(base.pack(), state.parameters); !status)
@@ -46,7 +76,11 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   for (const TileChange& change : *changes)
     if (change.base_version != kDormantVersion || change.new_version > state.tick)
       return Error{"snapshot: a tile is not against the base"};
-  if (Status status = applyTiles(state, base, *changes); !status) return Error{"snapshot: " + status.error()};
+  if (Status status = applyTiles(state, base, *changes, state.craters.size()); !status)
+    return Error{"snapshot: " + status.error()};
+  state.ledger.craters = crater_budget;
+  state.ledger.events = event_budget;
+  if (state.ledger.error() != 0) return Error{"snapshot: its ledger is off by " + std::to_string(state.ledger.error())};
   if (const std::uint64_t hash = stateHash(state); hash != state_hash)
     return Error{"snapshot: state hash " + hexText(hash) + " here, " + hexText(state_hash) + " announced"};
   return state;

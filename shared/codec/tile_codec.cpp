@@ -205,18 +205,26 @@ struct Prepared {
   std::unique_ptr<Tile> fresh;            // where it was dormant
   std::unique_ptr<PlaneCells> height;     // its new cells
   std::unique_ptr<PlaneCells> compacted;  // the same; nullptr: as it was
+  std::int64_t gained = 0;                // by craters
 };
 
-Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change) {
+Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change,
+                         std::size_t first_new_crater) {
   Prepared prepared;
   prepared.live = state.tiles.find(change.at);
   const std::int32_t held = prepared.live != nullptr ? prepared.live->version_tick : kDormantVersion;
   if (held != change.base_version)
     return Error{nameOf(change.at) + ": change is against version " + std::to_string(change.base_version) +
                  ", held is " + std::to_string(held)};
-  if (prepared.live == nullptr) prepared.fresh = makeTile(change.at, base, change.new_version);
+  if (prepared.live == nullptr) {
+    prepared.fresh = makeTile(change.at, {&base, &state.craters}, change.new_version);
+    prepared.gained = prepared.fresh->ground - prepared.fresh->initial;
+  }
   Tile& tile = prepared.live != nullptr ? *prepared.live : *prepared.fresh;
   prepared.height = std::make_unique<PlaneCells>(tile.height());
+  if (prepared.live != nullptr && first_new_crater < state.craters.size())
+    prepared.gained =
+        addCraters(change.at, *prepared.height, *tile.bedrock, base.pack(), state.craters, first_new_crater);
   if (!change.compaction.empty())
     prepared.compacted =
         tile.compacted() != nullptr ? std::make_unique<PlaneCells>(*tile.compacted()) : std::make_unique<PlaneCells>();
@@ -255,6 +263,7 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
     state.ledger.ground -= prepared.live->ground;
     state.ledger.compacted -= prepared.live->compacted_sum;
   }
+  state.ledger.craters += prepared.gained;
   Tile& tile = *prepared.live;
   tile.planes[int(Plane::height)] = std::move(prepared.height);
   if (prepared.compacted != nullptr) tile.planes[int(Plane::compacted)] = std::move(prepared.compacted);
@@ -270,15 +279,20 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
 
 }  // namespace
 
-Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes) {
+Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes,
+                  std::size_t first_new_crater) {
   const auto fresh = std::size_t(std::ranges::count(changes, kDormantVersion, &TileChange::base_version));
   if (state.tiles.size() + fresh > kSnapshotTilesLimit)
     return Error{std::to_string(state.tiles.size() + fresh) + " live tiles, the limit is " +
                  std::to_string(kSnapshotTilesLimit)};
+  const auto new_craters = state.craters.records().subspan(std::min(first_new_crater, state.craters.size()));
+  for (const Tile* tile : state.tiles.meeting(base.pack(), new_craters))
+    if (!std::ranges::binary_search(changes, tile->at, {}, &TileChange::at))
+      return Error{nameOf(tile->at) + ": a new crater meets it, and it is left out"};
   std::vector<Prepared> prepared;
   prepared.reserve(changes.size());
   for (const TileChange& change : changes) {
-    Result<Prepared> one = prepare(state, base, change);
+    Result<Prepared> one = prepare(state, base, change, first_new_crater);
     if (!one) return Error{one.error()};
     prepared.push_back(std::move(*one));
   }
@@ -297,7 +311,17 @@ Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& u
   if (update.parameters)
     if (Status status = validateParameters(base.pack(), *update.parameters); !status)
       return Error{tick_name + status.error()};
-  if (Status status = applyTiles(state, base, *changes); !status) return Error{tick_name + status.error()};
+  if (Status status = validateNewCraters(base.pack(), update.craters, state.craters.size()); !status)
+    return Error{tick_name + status.error()};
+  const std::size_t crater_count = state.craters.size();
+  for (std::size_t i = 0; i < update.craters.size(); ++i)
+    if (update.craters[i].tick != update.tick || update.craters[i].id != crater_count + i)
+      return Error{tick_name + "crater " + std::to_string(crater_count + i) + " has another id or tick"};
+  state.craters.add(update.craters);
+  if (Status status = applyTiles(state, base, *changes, crater_count); !status) {
+    state.craters.truncate(crater_count);
+    return Error{tick_name + status.error()};
+  }
   if (update.parameters) state.parameters = *update.parameters;
   state.tick = update.tick;
   state.previous_poses = std::move(state.poses);

@@ -16,13 +16,14 @@ namespace spoor {
 inline constexpr std::size_t kTickTilesLimit = 1 << 13;
 inline constexpr std::size_t kSnapshotTilesLimit = 1 << 17;
 
-/// Version of a tile that was dormant: it equals the base.
+/// Version of a tile that was dormant: base and craters.
 inline constexpr std::int32_t kDormantVersion = -1;
 
 /// What one tick (or the whole time since the base, in a snapshot) did to one tile.
 struct TileChange {
   TileCoordinate at;
-  std::int32_t base_version = kDormantVersion;  // version the difference is against; kDormantVersion: the base terrain
+  std::int32_t base_version = kDormantVersion;  // version the difference is against, with this tick's craters in it;
+                                                // kDormantVersion: dormant ground with all craters
   std::int32_t new_version = 0;
   WakeMask wake_mask = 0;
   std::uint64_t hash = 0;  // the tile's hash afterwards
@@ -46,8 +47,11 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
                                             std::size_t tile_limit = kTickTilesLimit);
 
 /// Applies changes to a state's tiles and keeps its sums. All is checked first (versions, height range, every tile's
-/// hash); on an error, which names the tile, the state is untouched.
-[[nodiscard]] Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes);
+/// hash, and that no live tile is left out that a new crater meets); on an error, which names the tile, the state is
+/// untouched.
+/// @param first_new_crater  those of the state's craters from here on have not changed its live tiles yet
+[[nodiscard]] Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes,
+                                std::size_t first_new_crater = kCratersLimit);
 
 /// One tick as the server publishes it and the session file could replay it to a viewer.
 struct TickUpdate {
@@ -56,13 +60,15 @@ struct TickUpdate {
   std::vector<Pose> poses;                    // of every body after this tick
   std::vector<std::uint8_t> tiles;            // encodeTiles
   std::optional<Parameters> parameters = {};  // from this tick on, where they changed
+  std::vector<Crater> craters = {};           // that came with this tick
 };
 
 /// Takes a state from tick - 1 to tick. Safe on untrusted content. On an error the state is untouched, but where only
 /// the state hash differs afterwards: then it has been applied and the error says both hashes.
 [[nodiscard]] Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& update);
 
-/// A whole state in bytes, meant to be compressed: tick, parameters, poses and every live tile against its base.
+/// A whole state in bytes, meant to be compressed: tick, parameters, craters, poses and every live tile against
+/// dormant ground.
 std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base);
 
 /// Safe on untrusted bytes.

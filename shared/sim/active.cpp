@@ -87,12 +87,13 @@ Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
 class Planner {
  public:
   Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-          std::span<const Pose> poses, const Parameters& parameters)
+          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters)
       : pack_(pack),
         parameters_(parameters),
         reach_q_(reach_q),
         state_(state),
         poses_(poses),
+        craters_(craters),
         // A straight walk out of a body's box passes a free cell of the ring around it.
         search_margin_(1 + (parameters.displacement == Displacement::spread ? parameters.spread_cells : 0)),
         placed_(poses.size()) {}
@@ -101,10 +102,12 @@ class Planner {
     TickPlan plan;
     plan.tick = state_.tick + 1;
     plan.parameters = parameters_;
+    plan.first_new_crater = state_.craters.size();
     if (parameters_.active_areas == 0)
       addTiles(wholeWorld(), tiles_);
     else
       addWoken(pack_, state_, tiles_);
+    for (const Tile* tile : state_.tiles.meeting(pack_, craters_)) tiles_.insert(tile->at);
     placeMoving(plan);
     if (tiles_.empty()) return plan;
     std::vector<std::vector<Domain>> domains;
@@ -217,6 +220,7 @@ class Planner {
   std::span<const std::int32_t> reach_q_;
   const WorldState& state_;
   std::span<const Pose> poses_;
+  std::span<const Crater> craters_;
   int search_margin_;
   std::set<TileCoordinate> tiles_;
   int step_count_ = 1;
@@ -243,8 +247,8 @@ std::vector<std::int32_t> bodyReaches(const ScenePack& pack) {
 }
 
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-                          std::span<const Pose> poses, const Parameters& parameters) {
-  return Planner(pack, reach_q, state, poses, parameters).plan();
+                          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters) {
+  return Planner(pack, reach_q, state, poses, parameters, craters).plan();
 }
 
 }  // namespace spoor

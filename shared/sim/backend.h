@@ -42,8 +42,8 @@ struct BackendMemory {
   std::vector<BufferBytes> buffers;  // what most of them are for, on the device where there is one
 };
 
-/// Runs stages 4 to 9 of planned ticks, on one state until forget(). A tick goes through three calls, in their order,
-/// and may overlap with the next: submit(1), settle(1), submit(2), collect(1), settle(2), ... Backends differ in
+/// Runs stages 2 and 4 to 9 of planned ticks, on one state until forget(). A tick goes through three calls, in their
+/// order, and may overlap with the next: submit(1), settle(1), submit(2), collect(1), settle(2), ... Backends differ in
 /// schedule only: the same state and plan give the same bits. One thread at a time, any thread.
 class Backend {
  public:
@@ -52,7 +52,8 @@ class Backend {
   /// What computes besides the processor, as its driver names it; "none (native)" where nothing does.
   virtual std::string renderer() const = 0;
 
-  /// Begins a tick. The tick before must be settled (asserted), all earlier ones collected. The base must live on.
+  /// Begins a tick. The tick before must be settled (asserted), all earlier ones collected. The base must live on. The
+  /// state's craters are those of this tick already; nothing else of it is.
   /// Errors: a device that is lost or has not the memory. The state goes on elsewhere once what is settled is
   /// collected.
   [[nodiscard]] virtual Status submit(TickPlan plan, const BaseTerrain& base, const WorldState& state) = 0;
@@ -83,9 +84,10 @@ std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options = {});
 struct ActiveTiles {
   std::vector<Tile*> tiles;                  // in the plan's order
   std::vector<std::unique_ptr<Tile>> fresh;  // those among them that are not in the state's store yet, in that order
+  std::vector<CellBox> cratered;  // [tiles] of the others, what new craters meet (cratersWithin); empty: nothing
 };
 
-/// Finds a plan's tiles in the state and makes those that are dormant.
+/// Finds a plan's tiles in the state and makes those that are dormant: with all craters, those of this tick too.
 ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const WorldState& state, ThreadPool& pool);
 
 /// What a tick did to one active tile. Where no cell changed the box is empty and the sums do not matter.
@@ -95,6 +97,11 @@ struct TileOutcome {
   std::int64_t ground = 0;
   std::int64_t compacted = 0;
 };
+
+/// Stage craters, of one live tile: takes its sums and the state's over what new craters did to its cells.
+/// @param gained  soil, 0.1 mm * cells
+/// @param hash    of the tile with it
+void commitCraters(Tile& tile, std::int64_t gained, std::uint64_t hash, WorldState& state);
 
 /// Ends a tick: makes fresh tiles live, takes all to their new versions, hashes, sums and wake masks, and keeps the
 /// state's sums.

@@ -59,6 +59,13 @@ class NativeBackend final : public Backend {
     {
       StageTimer timer(effect.stage_ms, Stage::active);
       active = takeTiles(plan, *base, state, pool_);
+    }
+    {
+      StageTimer timer(effect.stage_ms, Stage::craters);
+      runCraters(base->pack(), plan, active, state);
+    }
+    {
+      StageTimer timer(effect.stage_ms, Stage::active);
       area_.gather(active.tiles, plan.parameters.compression_q16 > 0, pool_);
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
@@ -93,6 +100,21 @@ class NativeBackend final : public Backend {
   }
 
  private:
+  /// Stage craters: what new ones do to live tiles.
+  void runCraters(const ScenePack& pack, const TickPlan& plan, const ActiveTiles& active, WorldState& state) {
+    std::vector<std::size_t> touched;
+    for (std::size_t i = 0; i < active.tiles.size(); ++i)
+      if (!active.cratered[i].empty()) touched.push_back(i);
+    std::vector<std::pair<std::int64_t, std::uint64_t>> outcomes(touched.size());
+    pool_.forEach(int(touched.size()), [&](int i, int) {
+      Tile& tile = *active.tiles[touched[i]];
+      outcomes[i].first = addCraters(tile.at, tile.height(), *tile.bedrock, pack, state.craters, plan.first_new_crater);
+      outcomes[i].second = tileHash(tile);
+    });
+    for (std::size_t i = 0; i < touched.size(); ++i)
+      commitCraters(*active.tiles[touched[i]], outcomes[i].first, outcomes[i].second, state);
+  }
+
   void runSubStep(const NativeContext& context, const SubStep& sub_step, int sweep, TickEffect& effect) {
     const int step = sweep * rules::kMatchingCount;
     {

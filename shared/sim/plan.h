@@ -10,14 +10,6 @@
 
 namespace spoor {
 
-/// Cells [x0, x1) x [y0, y1).
-struct CellBox {
-  std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  bool empty() const { return x0 >= x1 || y0 >= y1; }
-  bool meets(const CellBox& other) const { return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1; }
-  bool operator==(const CellBox&) const = default;
-};
-
 /// A body's mesh in one pose, ready for the raster: points are subcells relative to cell (origin_x, origin_y) and
 /// height units relative to z_q.
 struct PlacedBody {
@@ -48,6 +40,7 @@ struct TickPlan {
   std::int32_t tick = 0;
   Parameters parameters;
   std::vector<TileCoordinate> active;  // in (y, x) order
+  std::size_t first_new_crater = 0;    // those of the state's set from here on come with this tick
   SubStep stood;                       // moving bodies where they were before the tick, a domain for each, which may
                                        // overlap; cells that they covered take no soil in the first sub-step
   std::vector<SubStep> sub_steps;      // none where nothing is active
@@ -69,8 +62,10 @@ inline constexpr std::int64_t kDomainCellsLimit = kWholeWorldCellsLimit;  // of 
 /// Stage active: which tiles and bodies take part in the tick that leads from `state` to the given poses (valid).
 /// @param reach_q     bodyReaches
 /// @param parameters  of this tick (valid)
+/// @param craters     that come with this tick (valid); live tiles that they meet are active
 /// Errors: touching bodies join to a domain over the limits, or more than kTickTilesLimit tiles are active.
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-                          std::span<const Pose> poses, const Parameters& parameters);
+                          std::span<const Pose> poses, const Parameters& parameters,
+                          std::span<const Crater> craters = {});
 
 }  // namespace spoor

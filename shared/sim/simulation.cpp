@@ -5,6 +5,18 @@
 #include "shared/base/assert.h"
 
 namespace spoor {
+namespace {
+
+std::vector<Crater> numbered(std::span<const Crater> craters, std::int32_t tick, std::size_t first_id) {
+  std::vector<Crater> result(craters.begin(), craters.end());
+  for (Crater& crater : result) {
+    crater.tick = tick;
+    crater.id = std::uint32_t(first_id++);
+  }
+  return result;
+}
+
+}  // namespace
 
 Simulation::Simulation(const BaseTerrain& base, const PackId& id, std::unique_ptr<Backend> backend)
     : Simulation(base, initialState(id, base), std::move(backend)) {}
@@ -14,29 +26,40 @@ Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_pt
   backend_->forget();
 }
 
-Result<TickResult> Simulation::step(std::span<const Pose> poses, const std::optional<Parameters>& parameters) {
-  if (Status status = begin(poses, parameters); !status) return Error{status.error()};
+Result<TickResult> Simulation::step(std::span<const Pose> poses, const std::optional<Parameters>& parameters,
+                                    std::span<const Crater> craters) {
+  if (Status status = begin(poses, parameters, craters); !status) return Error{status.error()};
   return finish();
 }
 
-Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters) {
+Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters,
+                         std::span<const Crater> craters) {
   SPOOR_ASSERT(inFlight() < kTicksInFlight);
   if (Status status = validatePoses(base_->pack(), poses); !status) return status;
   if (parameters)
     if (Status status = validateParameters(base_->pack(), *parameters); !status) return status;
+  if (Status status = validateNewCraters(base_->pack(), craters, state_.craters.size()); !status) return status;
   if (Status status = settle(); !status) return status;
   TickResult result;
+  result.update.craters = numbered(craters, state_.tick + 1, state_.craters.size());
   Result<TickPlan> plan = [&] {
     StageTimer timer(result.effect.stage_ms, Stage::active);
-    return planTick(base_->pack(), reach_q_, state_, poses, parameters.value_or(state_.parameters));
+    return planTick(base_->pack(), reach_q_, state_, poses, parameters.value_or(state_.parameters),
+                    result.update.craters);
   }();
   if (!plan) return Error{plan.error()};
   result.update.tick = plan->tick;
   result.update.poses.assign(poses.begin(), poses.end());
   result.update.parameters = parameters;
   result.too_fast = plan->too_fast;
-  if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status)
+  {
+    StageTimer timer(result.effect.stage_ms, Stage::craters);
+    state_.craters.add(result.update.craters);
+  }
+  if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status) {
+    state_.craters.truncate(state_.craters.size() - craters.size());
     return failure_.emplace(Error{status.error()});
+  }
   submitted_ = std::move(result);
   return {};
 }
@@ -46,7 +69,10 @@ Status Simulation::settle() {
   if (failure_) return *failure_;
   if (!submitted_) return {};
   auto effect = backend_->settle(state_);
-  if (!effect) return failure_.emplace(Error{effect.error()});
+  if (!effect) {
+    state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+    return failure_.emplace(Error{effect.error()});
+  }
   TickResult result = *std::exchange(submitted_, std::nullopt);
   for (int stage = 0; stage < kStageCount; ++stage) effect->stage_ms[stage] += result.effect.stage_ms[stage];
   result.effect = std::move(*effect);

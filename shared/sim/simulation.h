@@ -26,15 +26,19 @@ class Simulation {
   Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend);
 
   /// Runs one tick that takes the bodies to `poses`: begin() and finish().
-  Result<TickResult> step(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {});
+  Result<TickResult> step(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {},
+                          std::span<const Crater> craters = {});
 
   /// The first half: plans the tick and hands it to the backend. Where that computes on a device, this may return long
   /// before the device is done: time to finish the tick before. Two ticks may be begun and not finished (asserted).
   /// @param parameters  from this tick on, where they change. They wake nothing: soil at rest stays until it is
-  /// reached. Errors, which leave the state untouched: poses or parameters that validatePoses and validateParameters
-  /// refuse, a tick that planTick finds too large. Errors after which the session cannot go on: a device that is lost
-  /// or has not the memory.
-  [[nodiscard]] Status begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {});
+  /// reached.
+  /// @param craters  that come with this tick; their tick and id are set here. Live tiles take them at once.
+  /// Errors, which leave the state untouched: poses, parameters or craters that validatePoses, validateParameters and
+  /// validateCrater refuse, more craters than a tick or a session may have, a tick that planTick finds too large.
+  /// Errors after which the session cannot go on: a device that is lost or has not the memory.
+  [[nodiscard]] Status begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {},
+                             std::span<const Crater> craters = {});
 
   /// The second half, of the oldest tick begun (asserted): waits for it, and encodes what it changed.
   /// Errors: the device is lost; the session cannot go on, and every later call says so again.

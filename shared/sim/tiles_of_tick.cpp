@@ -10,11 +10,10 @@ namespace {
 constexpr int kSize = rules::kTileSize;
 
 /// The tile and those neighbours whose common border lies within `reach` cells of a changed cell.
-WakeMask wakeMaskOf(const TileChange& change, int reach) {
-  if (change.width == 0) return 0;
-  const bool side[3][2] = {{change.x < reach, change.y < reach},
-                           {true, true},
-                           {change.x + change.width > kSize - reach, change.y + change.height > kSize - reach}};
+WakeMask wakeMaskOf(const CellBox& changed, int reach) {
+  if (changed.empty()) return 0;
+  const bool side[3][2] = {
+      {changed.x0 < reach, changed.y0 < reach}, {true, true}, {changed.x1 > kSize - reach, changed.y1 > kSize - reach}};
   WakeMask mask = 0;
   for (int bit = 0; bit < 9; ++bit)
     if (side[bit % 3][0] && side[bit / 3][1]) mask = WakeMask(mask | 1 << bit);
@@ -28,14 +27,28 @@ ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const World
   std::vector<std::size_t> missing;
   for (const TileCoordinate at : plan.active) {
     active.tiles.push_back(const_cast<Tile*>(state.tiles.find(at)));
-    if (active.tiles.back() == nullptr) missing.push_back(active.tiles.size() - 1);
+    active.cratered.emplace_back();
+    if (active.tiles.back() == nullptr)
+      missing.push_back(active.tiles.size() - 1);
+    else
+      active.cratered.back() = cratersWithin(at, base.pack(), state.craters, plan.first_new_crater);
   }
+  const DormantGround dormant{&base, &state.craters};
   active.fresh.resize(missing.size());
   pool.forEach(int(missing.size()), [&](int i, int) {
-    active.fresh[i] = makeTile(plan.active[missing[i]], base, plan.tick);
+    active.fresh[i] = makeTile(plan.active[missing[i]], dormant, plan.tick);
     active.tiles[missing[i]] = active.fresh[i].get();
   });
   return active;
+}
+
+void commitCraters(Tile& tile, std::int64_t gained, std::uint64_t hash, WorldState& state) {
+  state.tiles_hash -= tileStateHash(tile);
+  tile.hash = hash;
+  tile.ground += gained;
+  state.tiles_hash += tileStateHash(tile);
+  state.ledger.ground += gained;
+  state.ledger.craters += gained;
 }
 
 std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std::vector<TileOutcome> outcomes,
@@ -49,7 +62,12 @@ std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std
     const bool is_new = next_fresh != active.fresh.end() && next_fresh->get() == &tile;
     if (is_new) state.tiles.insert(std::move(*next_fresh++));
     const bool changed = change.width > 0;
-    if (!changed && !is_new && tile.wake_mask == 0) continue;
+    const CellBox& cratered = active.cratered[i];
+    if (!changed && !is_new && tile.wake_mask == 0 && cratered.empty()) continue;
+    if (is_new) {
+      state.ledger.initial += tile.initial;
+      state.ledger.craters += tile.ground - tile.initial;
+    }
     const std::uint64_t hash_before = is_new ? 0 : tileStateHash(tile);
     const std::int64_t ground_before = is_new ? 0 : tile.ground;
     const std::int64_t compacted_before = tile.compacted_sum;
@@ -62,12 +80,12 @@ std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std
       tile.compacted_sum = outcomes[i].compacted;
     }
     change.hash = tile.hash;
-    change.wake_mask = wakeMaskOf(change, reach);
+    const CellBox box{change.x, change.y, change.x + change.width, change.y + change.height};
+    change.wake_mask = WakeMask(wakeMaskOf(box, reach) | wakeMaskOf(cratered, reach));
     state.tiles.setWake(tile, change.wake_mask);
     state.tiles_hash += tileStateHash(tile) - hash_before;
     state.ledger.ground += tile.ground - ground_before;
     state.ledger.compacted += tile.compacted_sum - compacted_before;
-    if (is_new) state.ledger.initial += tile.initial;
     changes.push_back(std::move(change));
   }
   return changes;

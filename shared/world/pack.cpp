@@ -12,7 +12,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x50525053;  // "SPRP"
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kListLimit = 4096;         // meshes, paths, bodies
 constexpr std::size_t kWaypointLimit = 1 << 16;  // of a path
 constexpr std::size_t kWorkLimit = 1 << 24;  // vertices, triangles and edges, over all bodies: a tick visits them all
@@ -118,6 +118,25 @@ Status validatePath(const Path& path) {
   return {};
 }
 
+Status validateTimedCraters(const ScenePack& pack) {
+  if (Status status = validateCraterLimits(pack.crater_limits); !status) return Error{"pack: " + status.error()};
+  SPOOR_CHECK_RANGE(std::int64_t(pack.craters.size()), 0, std::int64_t(kCratersLimit));
+  std::size_t of_tick = 0;
+  for (std::size_t i = 0; i < pack.craters.size(); ++i) {
+    const Crater& crater = pack.craters[i];
+    const std::string name = "pack: crater " + std::to_string(i) + ": ";
+    if (Status status = validateCrater(pack, crater); !status) return Error{name + status.error()};
+    if (crater.id != i) return Error{name + "its id is " + std::to_string(crater.id)};
+    const std::int32_t before = i > 0 ? pack.craters[i - 1].tick : 1;
+    if (crater.tick < before)
+      return Error{name + "its tick is " + std::to_string(crater.tick) + ", before " + std::to_string(before)};
+    of_tick = crater.tick == before ? of_tick + 1 : 1;
+    if (of_tick > kTickCratersLimit)
+      return Error{name + "more than " + std::to_string(kTickCratersLimit) + " in one tick"};
+  }
+  return {};
+}
+
 /// The one list of fields behind encodePack and decodePack: `visit(value)` for integers, in the order of the bytes.
 template <typename Pack, typename Visit>
 void visitScalars(Pack& pack, Visit visit) {
@@ -139,6 +158,16 @@ void visitScalars(Pack& pack, Visit visit) {
   visit(pack.samples.row_count);
   visit(pack.samples.step_x_q32);
   visit(pack.samples.step_y_q32);
+}
+
+template <typename Limits, typename Visit>
+void visitScalars(Limits& limits, Visit visit) requires std::same_as<std::remove_const_t<Limits>, CraterLimits> {
+  visit(limits.radius_q);
+  visit(limits.hash_cell_q);
+  visit(limits.request_radius_q);
+  visit(limits.request_height_q);
+  visit(limits.request_distance_q);
+  visit(limits.requests_per_minute);
 }
 
 template <typename BodyType, typename Visit>
@@ -210,7 +239,7 @@ Status validatePack(const ScenePack& pack) {
     work += mesh.vertices.size() + mesh.triangles.size() + mesh.edges.size();
   }
   SPOOR_CHECK_RANGE(std::int64_t(work), 0, kWorkLimit);
-  return {};
+  return validateTimedCraters(pack);
 }
 
 Status validateParameters(const ScenePack& pack, const Parameters& parameters) {
@@ -258,6 +287,9 @@ std::vector<std::uint8_t> encodePack(const ScenePack& pack) {
     writer.putText(body.name);
     visitScalars(body, [&](auto value) { writer.put(value); });
   }
+  visitScalars(pack.crater_limits, [&](auto value) { writer.put(value); });
+  writer.put(std::uint32_t(pack.craters.size()));
+  for (const Crater& crater : pack.craters) putCrater(writer, crater);
   return std::move(writer.bytes);
 }
 
@@ -295,6 +327,8 @@ Result<ScenePack> decodePack(std::span<const std::uint8_t> bytes) {
     body.name = reader.getText();
     visitScalars(body, get);
   }
+  visitScalars(pack.crater_limits, get);
+  for (auto count = getCount(); count > 0 && !reader.failed(); --count) pack.craters.push_back(getCrater(reader));
   if (reader.failed()) return Error{"pack: truncated"};
   if (reader.left() > 0) return Error{"pack: " + std::to_string(reader.left()) + " bytes too many"};
   if (Status status = validatePack(pack); !status) return Error{status.error()};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/base/result.h"
+#include "shared/world/crater.h"
 #include "shared/world/parameters.h"
 #include "shared/world/pose.h"
 
@@ -98,6 +99,8 @@ struct ScenePack {
   std::vector<Mesh> meshes;
   std::vector<Path> paths;
   std::vector<Body> bodies;
+  CraterLimits crater_limits;
+  std::vector<Crater> craters;  // that the scene times itself: by tick, ids from 0 on
 };
 
 inline constexpr std::int32_t kWorldCellsLimit = 1 << 24;

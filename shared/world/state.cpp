@@ -27,6 +27,8 @@ std::uint64_t stateHash(const WorldState& state) {
   writer.put(state.pack_id.low);
   writer.put(state.pack_id.high);
   putParameters(writer, state.parameters);
+  writer.put(std::uint32_t(state.craters.size()));
+  writer.put(state.craters.hash());
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
@@ -37,6 +39,7 @@ WorldState initialState(const PackId& id, const BaseTerrain& base) {
   WorldState state;
   state.pack_id = id;
   state.parameters = base.pack().parameters;
+  state.craters = CraterSet(base.pack());
   state.poses = Script(base).poses(0);
   state.previous_poses = state.poses;
   return state;
@@ -45,6 +48,8 @@ WorldState initialState(const PackId& id, const BaseTerrain& base) {
 bool recount(const WorldState& state) {
   std::uint64_t tiles_hash = 0;
   Ledger ledger;
+  ledger.craters = state.ledger.craters;  // of the past: only that it balances can be checked
+  ledger.events = state.ledger.events;
   for (const Tile* tile : state.tiles.sorted()) {
     if (tileHash(*tile) != tile->hash) return false;
     tiles_hash += tileStateHash(*tile);
@@ -53,7 +58,7 @@ bool recount(const WorldState& state) {
     if (const PlaneCells* compacted = tile->compacted())
       ledger.compacted += std::accumulate(compacted->begin(), compacted->end(), std::int64_t(0));
   }
-  return tiles_hash == state.tiles_hash && ledger == state.ledger;
+  return tiles_hash == state.tiles_hash && ledger == state.ledger && ledger.error() == 0;
 }
 
 }  // namespace spoor

@@ -14,6 +14,7 @@ struct WorldState {
   Parameters parameters;
   std::vector<Pose> poses;           // of every body of the pack, after `tick`
   std::vector<Pose> previous_poses;  // and one tick earlier
+  CraterSet craters;
   TileStore tiles;
   // Sums over live tiles, kept up to date by whoever changes one.
   std::uint64_t tiles_hash = 0;  // of tileStateHash
@@ -30,7 +31,7 @@ std::uint64_t stateHash(const WorldState& state);
 WorldState initialState(const PackId& id, const BaseTerrain& base);
 
 /// Recomputes tiles_hash and the ledger from the heights: the slow check on the incremental ones.
-/// Returns false where they differ from what the state holds.
+/// Returns false where they differ from what the state holds, or the ledger does not balance.
 bool recount(const WorldState& state);
 
 }  // namespace spoor

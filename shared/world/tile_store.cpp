@@ -1,6 +1,7 @@
 #include "shared/world/tile_store.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "shared/base/assert.h"
 #include "shared/base/hash.h"
@@ -23,7 +24,8 @@ void fillBedrock(const ScenePack& pack, TileCoordinate at, const PlaneCells& hei
 
 }  // namespace
 
-std::unique_ptr<Tile> makeTile(TileCoordinate at, const BaseTerrain& base, std::int32_t tick) {
+std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, std::int32_t tick) {
+  const BaseTerrain& base = *dormant.base;
   const TileCoordinate extent = tileExtent(base.pack());
   SPOOR_ASSERT(at.x >= 0 && at.y >= 0 && at.x < extent.x && at.y < extent.y);
   auto tile = std::make_unique<Tile>();
@@ -35,8 +37,49 @@ std::unique_ptr<Tile> makeTile(TileCoordinate at, const BaseTerrain& base, std::
   fillBedrock(base.pack(), at, tile->height(), *tile->bedrock);
   tile->initial = kernels().sum(tile->height().data(), rules::kTileCells);
   tile->ground = tile->initial;
+  if (dormant.craters != nullptr)
+    tile->ground += addCraters(at, tile->height(), *tile->bedrock, base.pack(), *dormant.craters, 0);
   tile->hash = tileHash(*tile);
   return tile;
+}
+
+CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet& craters, std::size_t first_new) {
+  const std::int32_t x = at.x * rules::kTileSize, y = at.y * rules::kTileSize;
+  CellBox all;
+  if (first_new >= craters.size()) return all;
+  for (const std::uint32_t id : craters.meeting({x, y, x + rules::kTileSize, y + rules::kTileSize})) {
+    if (id < first_new) continue;
+    const CellBox box = craterBox(pack, craters.records()[id]);
+    const CellBox within{std::max(box.x0 - x, 0), std::max(box.y0 - y, 0), std::min(box.x1 - x, rules::kTileSize),
+                         std::min(box.y1 - y, rules::kTileSize)};
+    if (within.empty()) continue;
+    all = all.empty() ? within
+                      : CellBox{std::min(all.x0, within.x0), std::min(all.y0, within.y0), std::max(all.x1, within.x1),
+                                std::max(all.y1, within.y1)};
+  }
+  return all;
+}
+
+std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const ScenePack& pack,
+                        const CraterSet& craters, std::size_t first_new) {
+  const CellBox box =
+      first_new == 0 ? CellBox{0, 0, rules::kTileSize, rules::kTileSize} : cratersWithin(at, pack, craters, first_new);
+  if (craters.size() == 0 || box.empty()) return 0;
+  const std::int32_t columns = box.x1 - box.x0, rows = box.y1 - box.y0;
+  std::vector<std::int32_t> change(std::size_t(columns) * std::size_t(rows));
+  craters.fillChange(at.x * rules::kTileSize + box.x0, at.y * rules::kTileSize + box.y0, columns, rows, first_new,
+                     change);
+  std::int64_t gained = 0;
+  for (std::int32_t row = 0; row < rows; ++row)
+    for (std::int32_t column = 0; column < columns; ++column) {
+      const std::int32_t change_q = change[std::size_t(row * columns + column)];
+      if (change_q == 0) continue;
+      const auto i = std::size_t((box.y0 + row) * rules::kTileSize + box.x0 + column);
+      const std::int32_t before = height[i];
+      height[i] = rules::craterGround(before, bedrock[i], change_q);
+      gained += height[i] - before;
+    }
+  return gained;
 }
 
 Tile* TileStore::find(TileCoordinate at) {
@@ -77,6 +120,30 @@ std::vector<Tile*> TileStore::sorted() {
 std::vector<const Tile*> TileStore::sorted() const {
   const auto tiles = const_cast<TileStore*>(this)->sorted();
   return {tiles.begin(), tiles.end()};
+}
+
+std::vector<const Tile*> TileStore::meeting(const ScenePack& pack, std::span<const Crater> craters) const {
+  std::vector<const Tile*> found, live;
+  for (const Crater& crater : craters) {
+    const CellBox box = craterBox(pack, crater);
+    if (box.empty()) continue;
+    const TileCoordinate first{box.x0 / rules::kTileSize, box.y0 / rules::kTileSize};
+    const TileCoordinate last{(box.x1 - 1) / rules::kTileSize, (box.y1 - 1) / rules::kTileSize};
+    // The tiles of the box or the live ones: whichever are fewer.
+    if ((std::int64_t(last.x) - first.x + 1) * (std::int64_t(last.y) - first.y + 1) > std::int64_t(tiles_.size())) {
+      if (live.empty()) live = sorted();
+      std::ranges::copy_if(live, std::back_inserter(found), [&](const Tile* tile) {
+        return tile->at.x >= first.x && tile->at.x <= last.x && tile->at.y >= first.y && tile->at.y <= last.y;
+      });
+      continue;
+    }
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x)
+        if (const Tile* tile = find({x, y})) found.push_back(tile);
+  }
+  std::ranges::sort(found, {}, &Tile::at);
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
 }
 
 std::size_t TileStore::memoryBytes() const {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "shared/world/base_terrain.h"
+#include "shared/world/dormant_ground.h"
 
 namespace spoor {
 
@@ -31,7 +31,7 @@ struct Tile {
   std::int32_t awake_index = -1;  // place in the store's list of awake tiles
   std::uint64_t hash = 0;         // sum of its cells' hashes; cells outside the world count too
   std::int64_t ground = 0;        // sum of its heights, 0.1 mm * cells
-  std::int64_t initial = 0;       // the same when it became live
+  std::int64_t initial = 0;       // the same of the base
   std::int64_t compacted_sum = 0;
 
   PlaneCells& height() { return *planes[int(Plane::height)]; }
@@ -54,8 +54,18 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
-/// A tile as it is at the moment it becomes live: equal to the base. `at` must lie in the world (asserted).
-std::unique_ptr<Tile> makeTile(TileCoordinate at, const BaseTerrain& base, std::int32_t tick);
+/// A tile as it is at the moment it becomes live: dormant ground, so that what craters did to it so far is
+/// ground - initial. `at` must lie in the world (asserted).
+std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, std::int32_t tick);
+
+/// The box of cells, within the tile, that holds the boxes of all craters of a set from number `first_new` on; empty
+/// where none meets it.
+CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet& craters, std::size_t first_new);
+
+/// Changes heights of a live tile as those craters do: by D(S) - D(S without them), never below bedrock.
+/// @return  what the cells gained, 0.1 mm * cells
+std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const ScenePack& pack,
+                        const CraterSet& craters, std::size_t first_new);
 
 /// The live tiles of a world. Dormant tiles are not here and cost nothing.
 class TileStore {
@@ -75,6 +85,9 @@ class TileStore {
   /// Live tiles in (y, x) order.
   std::vector<Tile*> sorted();
   std::vector<const Tile*> sorted() const;
+
+  /// Live tiles that the boxes of craters meet, in (y, x) order, each once.
+  std::vector<const Tile*> meeting(const ScenePack& pack, std::span<const Crater> craters) const;
 
   std::size_t size() const { return tiles_.size(); }
   /// Bytes held by live tiles.

@@ -157,7 +157,7 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
   const std::int32_t first = (middle - radius) / rules::kTileSize, last = (middle + radius) / rules::kTileSize;
   for (std::int32_t tile_y = first; tile_y <= last; ++tile_y)
     for (std::int32_t tile_x = first; tile_x <= last; ++tile_x) {
-      auto tile = makeTile({tile_x, tile_y}, base, 0);
+      auto tile = makeTile({tile_x, tile_y}, {&base}, 0);
       for (int i = 0; i < rules::kTileCells; ++i) {
         const std::int64_t x = tile_x * rules::kTileSize + i % rules::kTileSize - middle;
         const std::int64_t y = tile_y * rules::kTileSize + i / rules::kTileSize - middle;
