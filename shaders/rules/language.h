@@ -8,7 +8,6 @@
 #define SPOOR_RULES_LANGUAGE_H
 
 #ifdef __cplusplus
-#include <bit>
 #include <cstdint>
 #define RULE static inline
 #define RULE_CONST static constexpr int
@@ -45,7 +44,7 @@ RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
 /// floor(a / 2^30) where that fits an int.
 RULE int wideFromQ30(wide a) { return int(a >> 30); }
 /// Place of the highest bit of a >= 0, -1 for 0.
-RULE int wideTop(wide a) { return int(std::bit_width(std::uint64_t(a))) - 1; }
+RULE int wideTop(wide a) { return a == 0 ? -1 : 63 - __builtin_clzll(std::uint64_t(a)); }
 /// a * 2^bits, cut off at 64 bits; bits 0..63.
 RULE wide wideUp(wide a, int bits) { return wide(std::uint64_t(a) << bits); }
 /// floor(a / 2^bits); bits 0..63.
@@ -54,7 +53,7 @@ RULE wide wideDown(wide a, int bits) { return a >> bits; }
 /// The high word of a * b.
 RULE uint mulHigh(uint a, uint b) { return uint(std::uint64_t(a) * b >> 32); }
 /// Place of the highest bit, -1 for 0.
-RULE int topBit(uint a) { return int(std::bit_width(a)) - 1; }
+RULE int topBit(uint a) { return a == 0 ? -1 : 31 - __builtin_clz(a); }
 
 /// a / count. Ranges: a >= 0, count 1..8. By a reciprocal of 31 + `places` bits, rounded up, which is exact. Branches
 /// would keep loops over it from being vectorised.

@@ -15,10 +15,10 @@ struct Measurement {
   void (*measure)(const Settings&, Report&);
   bool on_gl_only;
 };
-constexpr Measurement kMeasurements[] = {{"tick", measureTicks, false},        {"relax", measureRelax, false},
-                                         {"areas", measureAreas, false},       {"world", measureWorlds, false},
-                                         {"thesis", measureThesis, false},     {"errors", measureErrors, false},
-                                         {"bandwidth", measureBandwidth, true}};
+constexpr Measurement kMeasurements[] = {{"tick", measureTicks, false},      {"relax", measureRelax, false},
+                                         {"areas", measureAreas, false},     {"world", measureWorlds, false},
+                                         {"thesis", measureThesis, false},   {"errors", measureErrors, false},
+                                         {"craters", measureCraters, false}, {"bandwidth", measureBandwidth, true}};
 
 /// The command line, as it is written.
 struct Arguments {
@@ -32,9 +32,10 @@ Arguments parse(int argc, char** argv) {
   Arguments arguments;
   Options options("spoor-bench", "times of the pipeline, checked by hash");
   options.addPlain(
-      "tick|relax|areas|world|thesis|errors|bandwidth",
+      "tick|relax|areas|world|thesis|errors|craters|bandwidth",
       "a whole tick by stages; sweeps by schedules; the same cells in 1 to 8 areas; a car in a small and a "
-      "large world; the tables of Persson's thesis; errors of the ways to choose from beside their speed; how fast the "
+      "large world; the tables of Persson's thesis; errors of the ways to choose from beside their speed; craters as "
+      "records; how fast the "
       "device copies [tick]",
       &arguments.what, 1);
   options.add("scene", "NAME|PACK",
@@ -61,7 +62,8 @@ Arguments parse(int argc, char** argv) {
 /// What is wrong with the arguments together, which Options cannot see.
 Status check(const Arguments& arguments, const Measurement* measurement) {
   if (measurement == nullptr)
-    return Error{"'" + arguments.what.front() + "' is none of tick, relax, areas, world, thesis, errors, bandwidth"};
+    return Error{"'" + arguments.what.front() +
+                 "' is none of tick, relax, areas, world, thesis, errors, craters, bandwidth"};
   const std::set<std::string> schedules{"auto", "plain", "fused"}, backends{"auto", "gl", "native"};
   if (schedules.count(arguments.schedule) == 0)
     return Error{"--schedule: '" + arguments.schedule + "' is none of auto, plain, fused"};

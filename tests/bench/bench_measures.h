@@ -49,6 +49,9 @@ void measureWorlds(const Settings& settings, Report& report);
 void measureThesis(const Settings& settings, Report& report);
 /// Errors beside speed: of each way to find the nearest free cell, and of each rule that evens out slopes.
 void measureErrors(const Settings& settings, Report& report);
+/// Craters: error and speed of their profile, memory, the spatial hash, lazy ground beside eager. Cossetin Neto et al.,
+/// figure 7.
+void measureCraters(const Settings& settings, Report& report);
 /// The device's copy bandwidth.
 void measureBandwidth(const Settings& settings, Report& report);
 
