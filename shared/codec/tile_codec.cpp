@@ -206,6 +206,7 @@ struct Prepared {
   std::unique_ptr<PlaneCells> height;     // its new cells
   std::unique_ptr<PlaneCells> compacted;  // the same; nullptr: as it was
   std::int64_t gained = 0;                // by craters
+  std::unique_ptr<TileCraters> craters;   // where new ones met it
 };
 
 Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change,
@@ -222,9 +223,11 @@ Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileC
   }
   Tile& tile = prepared.live != nullptr ? *prepared.live : *prepared.fresh;
   prepared.height = std::make_unique<PlaneCells>(tile.height());
-  if (prepared.live != nullptr && first_new_crater < state.craters.size())
+  if (prepared.live != nullptr && first_new_crater < state.craters.size()) {
+    if (tile.craters != nullptr) prepared.craters = std::make_unique<TileCraters>(*tile.craters);
     prepared.gained =
-        addCraters(change.at, *prepared.height, *tile.bedrock, base.pack(), state.craters, first_new_crater);
+        addCraters(change.at, *prepared.height, *tile.bedrock, state.craters, first_new_crater, prepared.craters);
+  }
   if (!change.compaction.empty())
     prepared.compacted =
         tile.compacted() != nullptr ? std::make_unique<PlaneCells>(*tile.compacted()) : std::make_unique<PlaneCells>();
@@ -266,6 +269,7 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
   state.ledger.craters += prepared.gained;
   Tile& tile = *prepared.live;
   tile.planes[int(Plane::height)] = std::move(prepared.height);
+  if (prepared.craters != nullptr) tile.craters = std::move(prepared.craters);
   if (prepared.compacted != nullptr) tile.planes[int(Plane::compacted)] = std::move(prepared.compacted);
   tile.version_tick = change.new_version;
   state.tiles.setWake(tile, change.wake_mask);

@@ -62,7 +62,7 @@ class NativeBackend final : public Backend {
     }
     {
       StageTimer timer(effect.stage_ms, Stage::craters);
-      runCraters(base->pack(), plan, active, state);
+      runCraters(plan, active, state);
     }
     {
       StageTimer timer(effect.stage_ms, Stage::active);
@@ -101,14 +101,15 @@ class NativeBackend final : public Backend {
 
  private:
   /// Stage craters: what new ones do to live tiles.
-  void runCraters(const ScenePack& pack, const TickPlan& plan, const ActiveTiles& active, WorldState& state) {
+  void runCraters(const TickPlan& plan, const ActiveTiles& active, WorldState& state) {
     std::vector<std::size_t> touched;
     for (std::size_t i = 0; i < active.tiles.size(); ++i)
       if (!active.cratered[i].empty()) touched.push_back(i);
     std::vector<std::pair<std::int64_t, std::uint64_t>> outcomes(touched.size());
     pool_.forEach(int(touched.size()), [&](int i, int) {
       Tile& tile = *active.tiles[touched[i]];
-      outcomes[i].first = addCraters(tile.at, tile.height(), *tile.bedrock, pack, state.craters, plan.first_new_crater);
+      outcomes[i].first =
+          addCraters(tile.at, tile.height(), *tile.bedrock, state.craters, plan.first_new_crater, tile.craters);
       outcomes[i].second = tileHash(tile);
     });
     for (std::size_t i = 0; i < touched.size(); ++i)

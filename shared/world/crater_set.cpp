@@ -165,6 +165,11 @@ void CraterSet::addTo(std::span<rules::CraterSum> sums, const Lattice& lattice, 
   }
 }
 
+void CraterSet::addTo(std::span<rules::CraterSum> sums, const CellBox& cells, std::uint32_t id) const {
+  SPOOR_ASSERT(sums.size() == std::size_t(cells.x1 - cells.x0) * std::size_t(cells.y1 - cells.y0));
+  addTo(sums, Lattice{cells.x0, cells.y0, 1, cells.x1 - cells.x0, cells.y1 - cells.y0}, records_[id]);
+}
+
 void CraterSet::fill(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns, std::int32_t rows,
                      std::span<std::int32_t> displacement) const {
   SPOOR_ASSERT(displacement.size() == std::size_t(columns) * std::size_t(rows) && stride >= 1);
@@ -174,21 +179,6 @@ void CraterSet::fill(std::int32_t x, std::int32_t y, std::int32_t stride, std::i
   std::vector<rules::CraterSum> sums(displacement.size(), rules::craterSumOfNone());
   for (const std::uint32_t id : ids) addTo(sums, lattice, records_[id]);
   std::ranges::transform(sums, displacement.begin(), rules::craterTotal);
-}
-
-void CraterSet::fillChange(std::int32_t x, std::int32_t y, std::int32_t columns, std::int32_t rows,
-                           std::size_t first_new, std::span<std::int32_t> change) const {
-  SPOOR_ASSERT(change.size() == std::size_t(columns) * std::size_t(rows));
-  std::ranges::fill(change, 0);
-  const Lattice lattice{x, y, 1, columns, rows};
-  const std::vector<std::uint32_t> ids = meeting(lattice.box());
-  if (ids.empty() || ids.back() < first_new) return;
-  std::vector<rules::CraterSum> sums(change.size(), rules::craterSumOfNone());
-  auto id = ids.begin();
-  for (; *id < first_new; ++id) addTo(sums, lattice, records_[*id]);
-  std::ranges::transform(sums, change.begin(), [](const rules::CraterSum& sum) { return -rules::craterTotal(sum); });
-  for (; id != ids.end(); ++id) addTo(sums, lattice, records_[*id]);
-  for (std::size_t i = 0; i < sums.size(); ++i) change[i] += rules::craterTotal(sums[i]);
 }
 
 std::size_t CraterSet::memoryBytes() const {

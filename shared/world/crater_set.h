@@ -51,9 +51,9 @@ class CraterSet {
   /// D(S) at every `stride`-th cell from (x, y) on, row-major [rows * columns], 0.1 mm; 0 outside the map.
   void fill(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns, std::int32_t rows,
             std::span<std::int32_t> displacement) const;
-  /// D(S) - D(first `first_new` records) of a box of cells, laid out alike.
-  void fillChange(std::int32_t x, std::int32_t y, std::int32_t columns, std::int32_t rows, std::size_t first_new,
-                  std::span<std::int32_t> change) const;
+
+  /// Adds what one record does to the sums of a box of cells, row-major.
+  void addTo(std::span<rules::CraterSum> sums, const CellBox& cells, std::uint32_t id) const;
 
   std::size_t memoryBytes() const;
 

@@ -37,21 +37,27 @@ std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, 
   fillBedrock(base.pack(), at, tile->height(), *tile->bedrock);
   tile->initial = kernels().sum(tile->height().data(), rules::kTileCells);
   tile->ground = tile->initial;
+  std::unique_ptr<TileCraters> known;
   if (dormant.craters != nullptr)
-    tile->ground += addCraters(at, tile->height(), *tile->bedrock, base.pack(), *dormant.craters, 0);
+    tile->ground += addCraters(at, tile->height(), *tile->bedrock, *dormant.craters, 0, known);
   tile->hash = tileHash(*tile);
   return tile;
 }
 
-CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet& craters, std::size_t first_new) {
+CellBox cellsOf(TileCoordinate at) {
   const std::int32_t x = at.x * rules::kTileSize, y = at.y * rules::kTileSize;
+  return {x, y, x + rules::kTileSize, y + rules::kTileSize};
+}
+
+CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet& craters, std::size_t first_new) {
+  const CellBox cells = cellsOf(at);
   CellBox all;
   if (first_new >= craters.size()) return all;
-  for (const std::uint32_t id : craters.meeting({x, y, x + rules::kTileSize, y + rules::kTileSize})) {
+  for (const std::uint32_t id : craters.meeting(cells)) {
     if (id < first_new) continue;
     const CellBox box = craterBox(pack, craters.records()[id]);
-    const CellBox within{std::max(box.x0 - x, 0), std::max(box.y0 - y, 0), std::min(box.x1 - x, rules::kTileSize),
-                         std::min(box.y1 - y, rules::kTileSize)};
+    const CellBox within{std::max(box.x0, cells.x0) - cells.x0, std::max(box.y0, cells.y0) - cells.y0,
+                         std::min(box.x1, cells.x1) - cells.x0, std::min(box.y1, cells.y1) - cells.y0};
     if (within.empty()) continue;
     all = all.empty() ? within
                       : CellBox{std::min(all.x0, within.x0), std::min(all.y0, within.y0), std::max(all.x1, within.x1),
@@ -60,25 +66,26 @@ CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet&
   return all;
 }
 
-std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const ScenePack& pack,
-                        const CraterSet& craters, std::size_t first_new) {
-  const CellBox box =
-      first_new == 0 ? CellBox{0, 0, rules::kTileSize, rules::kTileSize} : cratersWithin(at, pack, craters, first_new);
-  if (craters.size() == 0 || box.empty()) return 0;
-  const std::int32_t columns = box.x1 - box.x0, rows = box.y1 - box.y0;
-  std::vector<std::int32_t> change(std::size_t(columns) * std::size_t(rows));
-  craters.fillChange(at.x * rules::kTileSize + box.x0, at.y * rules::kTileSize + box.y0, columns, rows, first_new,
-                     change);
+std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const CraterSet& craters,
+                        std::size_t first_new, std::unique_ptr<TileCraters>& known) {
+  const CellBox cells = cellsOf(at);
+  const std::vector<std::uint32_t> ids = craters.meeting(cells);
+  const auto old_count = std::size_t(std::ranges::lower_bound(ids, first_new) - ids.begin());
+  if (old_count == ids.size()) return 0;
+  if (known == nullptr || known->count != old_count) {
+    known = std::make_unique<TileCraters>();
+    for (; known->count < old_count; ++known->count) craters.addTo(known->sums, cells, ids[known->count]);
+  }
+  const TileCraters before = *known;
+  for (; known->count < ids.size(); ++known->count) craters.addTo(known->sums, cells, ids[known->count]);
   std::int64_t gained = 0;
-  for (std::int32_t row = 0; row < rows; ++row)
-    for (std::int32_t column = 0; column < columns; ++column) {
-      const std::int32_t change_q = change[std::size_t(row * columns + column)];
-      if (change_q == 0) continue;
-      const auto i = std::size_t((box.y0 + row) * rules::kTileSize + box.x0 + column);
-      const std::int32_t before = height[i];
-      height[i] = rules::craterGround(before, bedrock[i], change_q);
-      gained += height[i] - before;
-    }
+  for (std::size_t i = 0; i < rules::kTileCells; ++i) {
+    const std::int32_t change_q = rules::craterTotal(known->sums[i]) - rules::craterTotal(before.sums[i]);
+    if (change_q == 0) continue;
+    const std::int32_t height_before = height[i];
+    height[i] = rules::craterGround(height_before, bedrock[i], change_q);
+    gained += height[i] - height_before;
+  }
   return gained;
 }
 
@@ -147,10 +154,13 @@ std::vector<const Tile*> TileStore::meeting(const ScenePack& pack, std::span<con
 }
 
 std::size_t TileStore::memoryBytes() const {
-  std::size_t compacted = 0;
-  for (const auto& [key, tile] : tiles_) compacted += tile->compacted() != nullptr ? 1 : 0;
+  std::size_t compacted = 0, cratered = 0;
+  for (const auto& [key, tile] : tiles_) {
+    compacted += tile->compacted() != nullptr ? 1 : 0;
+    cratered += tile->craters != nullptr ? 1 : 0;
+  }
   return tiles_.size() * (sizeof(Tile) + 2 * sizeof(PlaneCells) + 4 * sizeof(void*)) + compacted * sizeof(PlaneCells) +
-         tiles_.bucket_count() * sizeof(void*);
+         cratered * sizeof(TileCraters) + tiles_.bucket_count() * sizeof(void*);
 }
 
 PlaneCells& Tile::makeCompacted() {

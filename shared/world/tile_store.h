@@ -21,17 +21,24 @@ inline constexpr WakeMask kWakeMaskLimit = 1u << 9;
 
 using PlaneCells = std::array<std::int32_t, rules::kTileCells>;
 
+/// What the craters of a set did to each cell of a live tile, kept so that a new one costs no more than itself.
+struct TileCraters {
+  std::size_t count = 0;  // of craters that met the tile
+  std::array<rules::CraterSum, rules::kTileCells> sums{};
+};
+
 /// A live tile. Everything but `planes`, `version_tick` and `wake_mask` is derived and kept for speed.
 struct Tile {
   TileCoordinate at;
   std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // height is always there; others once not 0 everywhere
   std::unique_ptr<PlaneCells> bedrock;
-  std::int32_t version_tick = 0;  // the tick at which it last changed, or became live
-  WakeMask wake_mask = 0;         // set by TileStore::setWake
-  std::int32_t awake_index = -1;  // place in the store's list of awake tiles
-  std::uint64_t hash = 0;         // sum of its cells' hashes; cells outside the world count too
-  std::int64_t ground = 0;        // sum of its heights, 0.1 mm * cells
-  std::int64_t initial = 0;       // the same of the base
+  std::unique_ptr<TileCraters> craters;  // from the first crater on that fell on it while it was live
+  std::int32_t version_tick = 0;         // the tick at which it last changed, or became live
+  WakeMask wake_mask = 0;                // set by TileStore::setWake
+  std::int32_t awake_index = -1;         // place in the store's list of awake tiles
+  std::uint64_t hash = 0;                // sum of its cells' hashes; cells outside the world count too
+  std::int64_t ground = 0;               // sum of its heights, 0.1 mm * cells
+  std::int64_t initial = 0;              // the same of the base
   std::int64_t compacted_sum = 0;
 
   PlaneCells& height() { return *planes[int(Plane::height)]; }
@@ -58,14 +65,18 @@ struct Ledger {
 /// ground - initial. `at` must lie in the world (asserted).
 std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, std::int32_t tick);
 
+/// The cells of a tile, those outside the world too.
+CellBox cellsOf(TileCoordinate at);
+
 /// The box of cells, within the tile, that holds the boxes of all craters of a set from number `first_new` on; empty
 /// where none meets it.
 CellBox cratersWithin(TileCoordinate at, const ScenePack& pack, const CraterSet& craters, std::size_t first_new);
 
-/// Changes heights of a live tile as those craters do: by D(S) - D(S without them), never below bedrock.
-/// @return  what the cells gained, 0.1 mm * cells
-std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const ScenePack& pack,
-                        const CraterSet& craters, std::size_t first_new);
+/// Changes heights of a tile as those craters do: by D(S) - D(S without them), never below bedrock.
+/// @param known  of the tile, what the craters before did; made where it is not there, and brought up to date
+/// @return       what the cells gained, 0.1 mm * cells
+std::int64_t addCraters(TileCoordinate at, PlaneCells& height, const PlaneCells& bedrock, const CraterSet& craters,
+                        std::size_t first_new, std::unique_ptr<TileCraters>& known);
 
 /// The live tiles of a world. Dormant tiles are not here and cost nothing.
 class TileStore {
