@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "shaders/rules/crater.h"
 #include "shaders/rules/exchange.h"
 #include "shaders/rules/mix.h"
 #include "shaders/rules/nearest.h"
@@ -66,6 +67,24 @@ TEST_P(EveryKernels, SumsAndEndsOfRows) {
     if (n == 0) continue;
     ASSERT_EQ(kernels_.lowest(cells.data(), n), *std::ranges::min_element(cells)) << n;
     ASSERT_EQ(kernels_.highest(cells.data(), n), *std::ranges::max_element(cells)) << n;
+  }
+}
+
+TEST_P(EveryKernels, RowsOfACraterAreTheRule) {
+  const auto drawn = [&](int low, int high) { return low + int(engine_() % std::uint32_t(high - low + 1)); };
+  for (int round = 0; round < 3000; ++round) {
+    const int crest = 1 + (drawn(0, rules::kCraterReachLimit / 2 - 1) >> drawn(0, 21));
+    const int inner = round % 7 == 0 ? crest : drawn(0, crest);
+    const auto shape = rules::craterShape(0, 0, inner, crest, drawn(0, rules::kCraterHeightLimit) >> drawn(0, 20),
+                                          drawn(0, rules::kCraterHeightLimit) >> drawn(0, 20), drawn(0, 65535),
+                                          round % 2 == 0 ? 0 : drawn(0, 65535), 0);
+    const int count = drawn(0, kLongestRow), step = drawn(1, std::max(shape.outer / 20, 1));
+    const int dx = drawn(-shape.outer - shape.outer / 4, shape.outer), dy = drawn(-shape.outer - 1, shape.outer + 1);
+    Cells row(std::size_t(count), 77), expected;
+    for (int i = 0; i < count; ++i) expected.push_back(rules::craterDisplacement(shape, dx + i * step, dy));
+    kernels_.craterRow(shape, dx, step, dy, count, row.data());
+    ASSERT_EQ(row, expected) << "crest " << crest << ", inner " << inner << ", from " << dx << ", " << dy << ", step "
+                             << step;
   }
 }
 

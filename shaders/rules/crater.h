@@ -62,12 +62,14 @@ RULE CraterShape craterShape(int x, int y, int inner, int crest, int rim, int de
   return shape;
 }
 
-/// Offset from a lattice point times its gradient, which is one of (+-1, +-1/2), (+-1/2, +-1). Q27.
+/// Offset from a lattice point times its gradient, which is one of (+-1, +-1/2), (+-1/2, +-1). Q27. Without branches,
+/// as all of the noise, so that loops over it are vectorised.
 RULE int noiseSlope(uint seed, int spoke, int ring, int du, int dv) {
   uint drawn = mix32(seed + uint(spoke) * 0x9e3779b1u + uint(ring) * 0x85ebca77u) >> 29;
-  int u = (drawn & 1u) != 0u ? -du : du;
-  int v = (drawn & 2u) != 0u ? -dv : dv;
-  return (drawn & 4u) != 0u ? u + (v >> 1) : (u >> 1) + v;
+  int flip_u = -int(drawn & 1u), flip_v = -int(drawn >> 1 & 1u), half_v = int(drawn >> 2);
+  int u = (du ^ flip_u) - flip_u;
+  int v = (dv ^ flip_v) - flip_v;
+  return (u >> (1 - half_v)) + (v >> half_v);
 }
 
 /// a + (b - a) * part / 2^27, rounded down. |a|, |b| < 2^29.
@@ -84,7 +86,7 @@ RULE int noiseFade(int t) {
 /// @param out     lattice cells from the centre, Q27
 RULE int noiseOctave(uint seed, int spokes, uint around, uint out_q27) {
   int spoke = int(around >> kNoiseBits);
-  int next = spoke + 1 == spokes ? 0 : spoke + 1;
+  int next = (spoke + 1) * int(spoke + 1 != spokes);
   int ring = int(out_q27 >> kNoiseBits);
   int u = int(around & uint(kNoiseOne - 1));
   int v = int(out_q27 & uint(kNoiseOne - 1));
@@ -105,50 +107,81 @@ RULE int craterNoise(uint seed, uint turn, uint radius) {
   return clampInt(first + (second >> 1), -kNoiseOne, kNoiseOne);
 }
 
-/// (d - R2) / (R3 - R2) in Q31, 0 .. 1, from (d^2 - R2^2) / ((d + R2) (R3 - R2)): as exact however near d is to R2.
+/// Where a place lies in a crater's profile.
+struct CraterPlace {
+  uint share;   // of the way from the bottom of its zone, R3 or the centre, to the crest: 0 .. 1 in Q29
+  uint radius;  // distance from the centre by R2, Q30
+};
+
+/// Smooth step of the root of t: 3 t - 2 t^(3/2), as share.
+/// @param t, root  Q31
+RULE uint craterShare(uint t, uint root) { return mulHigh(t, 0xc0000000u - root); }
+
+/// In the cavity and the inner zone, d < R2.
 /// @param square  d^2
-/// @param beyond  d^2 - R2^2 >= 0
-RULE uint craterBand(CraterShape shape, wide square, wide beyond) {
-  if (wideZero(beyond)) return 0u;
+RULE CraterPlace placeInside(CraterShape shape, wide square) {
+  uint t = minUint(mulHigh(scaledTo(square, shape.square_exponent), shape.square_part), 0x80000000u);
+  uint root = rootQ31(t);
+  CraterPlace place;
+  place.share = craterShare(t, root);
+  place.radius = root >> 1;
+  return place;
+}
+
+/// In the outer zone, R2 <= d <= R3. There x = (d - R2) / (R3 - R2) is found as (d^2 - R2^2) / ((d + R2) (R3 - R2)): as
+/// exact however near d is to R2.
+/// @param square  d^2
+/// @param beyond  d^2 - R2^2
+RULE CraterPlace placeOutside(CraterShape shape, wide square, wide beyond) {
   int even = (wideTop(square) - 30) & ~1;  // d^2 * 2^-even is 1/4 or more as Q32
   uint a = scaledTo(square, even);
-  uint root = mulHigh(a, reciprocalRoot(a));  // d * 2^(15 - even / 2), below 2^31
+  uint distance = mulHigh(a, reciprocalRoot(a));  // d * 2^(15 - even / 2), below 2^31
   int places = 15 - (even >> 1);
-  Scaled sum = scaledFrom(wideAdd(wideFrom(int(root)), wideUp(wideFrom(shape.crest), places)));
+  Scaled sum = scaledFrom(wideAdd(wideFrom(int(distance)), wideUp(wideFrom(shape.crest), places)));
   Scaled top = scaledFrom(beyond);
   uint quotient = mulHigh(mulHigh(top.mantissa, reciprocal(sum.mantissa)), shape.band_part);  // Q30, below 4
   int exponent = top.exponent - (sum.exponent - places) - shape.band_exponent - 31;
-  uint share = exponent >= 0 ? quotient << uint(exponent) : (exponent > -32 ? quotient >> uint(-exponent) : 0u);
-  return share > 0x80000000u ? 0x80000000u : share;
+  uint x = (quotient >> uint(clampInt(-exponent, 0, 31))) << uint(clampInt(exponent, 0, 2));
+  x = minUint(x, 0x80000000u);
+  uint t = 0x80000000u - (mulHigh(x, x) << 1);
+  CraterPlace place;
+  place.share = craterShare(t, rootQ31(t));
+  place.radius = (1u << 30) + mulHigh(x, shape.band_share);
+  return place;
 }
 
-/// What a crater adds to the ground at (dx, dy) from its centre: + rim, - cavity, 0 beyond R3. Rounded to nearest; less
-/// than one unit from Algorithm 1 in real numbers.
+/// The noise's part of a crater's height at (dx, dy) from its centre, in 1/256 units.
+RULE int craterRoughness(CraterShape shape, int dx, int dy, uint radius) {
+  return wideLow(wideDown(wideMul(shape.amplitude, craterNoise(shape.seed, turnOf(dx, dy), radius)), kNoiseBits));
+}
+
+/// What the crater adds to the ground, rounded to nearest.
+/// @param height  of the crest above the zone's bottom, with noise, in 1/256 units
+/// @param bottom  -depth inside, 0 outside
+RULE int craterLift(int height, uint share, int bottom) {
+  const int bias = 1 << 25;  // keeps what is shifted above 0
+  wide lifted = wideAdd(wideMul(height, int(share)), wideAdd(wideUp(wideFrom(1), 36), wideUp(wideFrom(bias), 37)));
+  return wideLow(wideDown(lifted, 37)) - bias + bottom;
+}
+
+/// What a crater adds to the ground at (dx, dy) from its centre: + rim, - cavity, 0 beyond R3. Less than one unit from
+/// Algorithm 1 in real numbers.
 /// Ranges: dx, dy any that do not overflow.
 RULE int craterDisplacement(CraterShape shape, int dx, int dy) {
   if (dx > shape.outer || dx < -shape.outer || dy > shape.outer || dy < -shape.outer) return 0;
   wide square = wideAdd(wideMul(dx, dx), wideMul(dy, dy));
   if (wideNegative(wideSub(wideMul(shape.outer, shape.outer), square))) return 0;
   wide beyond = wideSub(square, wideMul(shape.crest, shape.crest));
-  bool cavity = wideNegative(beyond);
-  uint t, root, radius;
-  if (cavity) {
-    t = mulHigh(scaledTo(square, shape.square_exponent), shape.square_part);
-    if (t > 0x80000000u) t = 0x80000000u;
-    root = rootQ31(t);
-    radius = root >> 1;
-  } else {
-    uint x = craterBand(shape, square, beyond);
-    t = 0x80000000u - (mulHigh(x, x) << 1);
-    root = rootQ31(t);
-    radius = (1u << 30) + mulHigh(x, shape.band_share);
-  }
-  int share = int(mulHigh(t, 0xc0000000u - root));  // smoothstep of the root, Q29
-  int height = (shape.rim + (cavity ? shape.depth : 0)) << 8;
-  if (shape.amplitude > 0)
-    height += wideLow(wideDown(wideMul(shape.amplitude, craterNoise(shape.seed, turnOf(dx, dy), radius)), kNoiseBits));
-  int lifted = wideLow(wideDown(wideAdd(wideMul(height, share), wideUp(wideFrom(1), 36)), 37));
-  return cavity ? lifted - shape.depth : lifted;
+  bool inside = wideNegative(beyond);
+  CraterPlace place;
+  if (inside)
+    place = placeInside(shape, square);
+  else
+    place = placeOutside(shape, square, beyond);
+  int depth = inside ? shape.depth : 0;
+  int height = (shape.rim + depth) << 8;
+  if (shape.amplitude > 0) height += craterRoughness(shape, dx, dy, place.radius);
+  return craterLift(height, place.share, -depth);
 }
 
 /// What the craters of a set do to one cell, so far. The order in which they are added does not show.

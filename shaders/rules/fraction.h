@@ -16,14 +16,14 @@ struct Scaled {
 
 /// value * 2^-exponent, rounded down to a uint, where it fits one. value >= 0.
 RULE uint scaledTo(wide value, int exponent) {
-  return uint(wideLow(exponent >= 0 ? wideDown(value, exponent) : wideUp(value, -exponent)));
+  return uint(wideLow(wideUp(wideDown(value, maxInt(exponent, 0)), maxInt(-exponent, 0))));
 }
 
 /// A number >= 0 to 32 bits, rounded down.
 RULE Scaled scaledFrom(wide value) {
   Scaled scaled;
   scaled.exponent = wideTop(value) - 31;
-  scaled.mantissa = wideZero(value) ? 0u : scaledTo(value, scaled.exponent);
+  scaled.mantissa = scaledTo(value, scaled.exponent);
   return scaled;
 }
 
@@ -43,11 +43,12 @@ RULE uint reciprocalRoot(uint a) {
 
 /// sqrt(t) in Q31 for t in Q31, 0 <= t <= 1.
 RULE uint rootQ31(uint t) {
-  if (t == 0u) return 0u;
-  if (t >= 0x80000000u) return 0x80000000u;
-  int shift = (30 - topBit(t)) & ~1;
-  uint a = (t << 1) << uint(shift);
-  return mulHigh(a, reciprocalRoot(a)) >> uint(shift >> 1);
+  bool whole = t >= 0x80000000u;
+  uint part = whole ? 0x7fffffffu : maxUint(t, 1u);
+  int shift = (30 - topBit(part)) & ~1;
+  uint a = (part << 1) << uint(shift);
+  uint root = mulHigh(a, reciprocalRoot(a)) >> uint(shift >> 1);
+  return whole ? 0x80000000u : (t == 0u ? 0u : root);
 }
 
 /// atan(a) / (2 pi) for a in Q32, 0 <= a < 1: in Q32 of a turn, within 4 units. A polynomial in a^2 that was fitted to
@@ -69,15 +70,14 @@ RULE uint eighthTurn(uint a) {
 /// The direction of (x, y) from +x towards +y, as a share of a full turn; 0 for (0, 0). Ranges: +-2^24.
 RULE uint turnOf(int x, int y) {
   uint ax = uint(absInt(x)), ay = uint(absInt(y));
-  bool steep = ay > ax;
-  uint most = steep ? ay : ax, least = steep ? ax : ay;
-  if (least == 0u) return steep ? (y > 0 ? 0x40000000u : 0xc0000000u) : (x < 0 ? 0x80000000u : 0u);
+  uint most = maxUint(maxUint(ax, ay), 1u), least = minUint(ax, ay);
   int shift = 31 - topBit(most);
-  uint ratio = least == most ? 0x80000000u : mulHigh(least << uint(shift), reciprocal(most << uint(shift)));
-  uint turn = eighthTurn(ratio >= 0x80000000u ? 0xffffffffu : ratio << 1);
-  if (steep) turn = 0x40000000u - turn;
-  if (x < 0) turn = 0x80000000u - turn;
-  return y < 0 ? 0u - turn : turn;
+  uint ratio = mulHigh(least << uint(shift), reciprocal(most << uint(shift)));  // a few units less than 1 where equal
+  uint turn = eighthTurn(least == most ? 0xffffffffu : minUint(ratio, 0x7fffffffu) << 1);
+  uint steep = 0u - uint(ay > ax), west = 0u - uint(x < 0), south = 0u - uint(y < 0);
+  turn = (turn ^ steep) - steep + (steep & 0x40000000u);
+  turn = (turn ^ west) - west + (west & 0x80000000u);
+  return (turn ^ south) - south;
 }
 
 SPOOR_RULES_END

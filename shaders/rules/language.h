@@ -43,17 +43,38 @@ RULE wide wideTimes(wide a, int b) { return a * b; }
 RULE wide wideFloorDiv(wide a, wide b) { return a / b - (a % b < 0 ? 1 : 0); }
 /// floor(a / 2^30) where that fits an int.
 RULE int wideFromQ30(wide a) { return int(a >> 30); }
-/// Place of the highest bit of a >= 0, -1 for 0.
-RULE int wideTop(wide a) { return a == 0 ? -1 : 63 - __builtin_clzll(std::uint64_t(a)); }
 /// a * 2^bits, cut off at 64 bits; bits 0..63.
 RULE wide wideUp(wide a, int bits) { return wide(std::uint64_t(a) << bits); }
-/// floor(a / 2^bits); bits 0..63.
-RULE wide wideDown(wide a, int bits) { return a >> bits; }
+/// The bits of a, shifted down by 0..63, zeros from above: floor(a / 2^bits) for a >= 0.
+RULE wide wideDown(wide a, int bits) { return wide(std::uint64_t(a) >> bits); }
 
 /// The high word of a * b.
 RULE uint mulHigh(uint a, uint b) { return uint(std::uint64_t(a) * b >> 32); }
+
 /// Place of the highest bit, -1 for 0.
+#ifdef SPOOR_KERNELS_NAME
+// By halves: loops over it are to be vectorised, and few processors count zeros of many numbers at once.
+RULE int topBit(uint a) {
+  int top = a == 0 ? -1 : 0;
+  int shift = a > 0xffffu ? 16 : 0;
+  uint rest = a >> shift;
+  top += shift;
+  shift = rest > 0xffu ? 8 : 0;
+  rest >>= shift;
+  top += shift;
+  shift = rest > 0xfu ? 4 : 0;
+  rest >>= shift;
+  top += shift;
+  return top + (rest > 7u ? 3 : rest > 3u ? 2 : rest > 1u ? 1 : 0);
+}
+#else
 RULE int topBit(uint a) { return a == 0 ? -1 : 31 - __builtin_clz(a); }
+#endif
+/// The same of a >= 0.
+RULE int wideTop(wide a) {
+  const uint high = uint(std::uint64_t(a) >> 32);
+  return topBit(high != 0 ? high : uint(a)) + (high != 0 ? 32 : 0);
+}
 
 /// a / count. Ranges: a >= 0, count 1..8. By a reciprocal of 31 + `places` bits, rounded up, which is exact. Branches
 /// would keep loops over it from being vectorised.
@@ -68,6 +89,8 @@ RULE int dividedByCount(int a, int count) {
 
 RULE int minInt(int a, int b) { return a < b ? a : b; }
 RULE int maxInt(int a, int b) { return a > b ? a : b; }
+RULE uint maxUint(uint a, uint b) { return a > b ? a : b; }
+RULE uint minUint(uint a, uint b) { return a < b ? a : b; }
 
 #else
 
@@ -105,15 +128,15 @@ wide wideTimes(wide a, int b) {
   if (b < 0) product.high -= a.low;
   return product;
 }
+int topBit(uint a) { return findMSB(a); }
 int wideTop(wide a) { return a.high != 0u ? 32 + findMSB(a.high) : findMSB(a.low); }
 wide wideUp(wide a, int bits) {
   if (bits >= 32) return wide(0u, a.low << uint(bits - 32));
   return bits == 0 ? a : wide(a.low << uint(bits), (a.high << uint(bits)) | (a.low >> uint(32 - bits)));
 }
 wide wideDown(wide a, int bits) {
-  uint sign = uint(int(a.high) >> 31);
-  if (bits >= 32) return wide(uint(int(a.high) >> (bits - 32)), sign);
-  return bits == 0 ? a : wide((a.low >> uint(bits)) | (a.high << uint(32 - bits)), uint(int(a.high) >> bits));
+  if (bits >= 32) return wide(a.high >> uint(bits - 32), 0u);
+  return bits == 0 ? a : wide((a.low >> uint(bits)) | (a.high << uint(32 - bits)), a.high >> uint(bits));
 }
 /// Bit by bit, as many as the quotient has.
 wide wideFloorDiv(wide a, wide b) {
@@ -137,12 +160,13 @@ wide wideFloorDiv(wide a, wide b) {
 int wideFromQ30(wide a) { return int((a.high << 2) | (a.low >> 30)); }
 
 uint mulHigh(uint a, uint b) { return wideMulUnsigned(a, b).high; }
-int topBit(uint a) { return findMSB(a); }
 
 int dividedByCount(int a, int count) { return a / count; }
 
 int minInt(int a, int b) { return min(a, b); }
 int maxInt(int a, int b) { return max(a, b); }
+uint maxUint(uint a, uint b) { return max(a, b); }
+uint minUint(uint a, uint b) { return min(a, b); }
 
 #endif
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "shaders/rules/crater.h"
+
 namespace spoor {
 
 /// A row of cells as the slope rules see them (rules/slope.h). Pointers are to its first cell; kHalo more cells lie
@@ -35,6 +37,9 @@ struct Kernels {
   /// Smallest and largest of n >= 1 cells.
   std::int32_t (*lowest)(const std::int32_t* cells, int n);
   std::int32_t (*highest)(const std::int32_t* cells, int n);
+  /// What a crater (rules/crater.h, craterDisplacement) adds to a row of cells, `step` apart, the first at (dx, dy)
+  /// from its centre.
+  void (*craterRow)(const rules::CraterShape& shape, int dx, int step, int dy, int n, std::int32_t* displacement);
   /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
   void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
   /// The same stage: takes undersides away that lie too high above bedrock to be seen (rules/penetration.h).

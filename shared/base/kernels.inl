@@ -1,6 +1,7 @@
 // The bodies of kernels.h, compiled once per instruction set with SPOOR_KERNELS_NAME set. Nothing but rule headers and
 // plain loops in here: a template or an inline function of the standard library, compiled for a newer processor, could
 // be the copy that the linker keeps for everyone.
+#include "shaders/rules/crater.h"
 #include "shaders/rules/exchange.h"
 #include "shaders/rules/mix.h"
 #include "shaders/rules/nearest.h"
@@ -60,6 +61,46 @@ int32_t highest(const int32_t* cells, int n) {
   int32_t result = cells[0];
   for (int i = 1; i < n; ++i) result = rules::maxInt(result, cells[i]);
   return result;
+}
+
+/// Flat: a rule that stays a call would keep the loop from being vectorised.
+template <bool kInside, bool kNoise>
+[[gnu::flatten]] void craterCells(const rules::CraterShape& shape, int dx, int step, int dy, int n,
+                                  int32_t* __restrict displacement) {
+  const rules::CraterShape own = shape;
+  const int depth = kInside ? own.depth : 0;
+  const int64_t dy_square = int64_t(dy) * dy, crest_square = int64_t(own.crest) * own.crest;
+  for (int i = 0; i < n; ++i) {
+    const int x = dx + i * step;
+    const int64_t square = int64_t(x) * x + dy_square;
+    const rules::CraterPlace place =
+        kInside ? rules::placeInside(own, square) : rules::placeOutside(own, square, square - crest_square);
+    int height = (own.rim + depth) << 8;
+    if (kNoise) height += rules::craterRoughness(own, x, dy, place.radius);
+    displacement[i] = rules::craterLift(height, place.share, -depth);
+  }
+}
+
+template <bool kInside>
+void craterZone(const rules::CraterShape& shape, int dx, int step, int dy, int begin, int end, int32_t* displacement) {
+  const auto cells = shape.amplitude > 0 ? craterCells<kInside, true> : craterCells<kInside, false>;
+  cells(shape, dx + begin * step, step, dy, end - begin, displacement + begin);
+}
+
+/// A row cuts a disc in one piece, so its cells are outside, in the outer zone, inside, and the same backwards.
+void craterRow(const rules::CraterShape& shape, int dx, int step, int dy, int n, int32_t* displacement) {
+  const int64_t dy_square = int64_t(dy) * dy;
+  const int64_t outer_square = int64_t(shape.outer) * shape.outer, crest_square = int64_t(shape.crest) * shape.crest;
+  const auto square = [&](int i) { return int64_t(dx + i * step) * (dx + i * step) + dy_square; };
+  int outer_begin = 0, outer_end = n;
+  while (outer_begin < n && square(outer_begin) > outer_square) displacement[outer_begin++] = 0;
+  while (outer_end > outer_begin && square(outer_end - 1) > outer_square) displacement[--outer_end] = 0;
+  int begin = outer_begin, end = outer_end;
+  while (begin < end && square(begin) >= crest_square) ++begin;
+  while (end > begin && square(end - 1) >= crest_square) --end;
+  craterZone<false>(shape, dx, step, dy, outer_begin, begin, displacement);
+  craterZone<true>(shape, dx, step, dy, begin, end, displacement);
+  craterZone<false>(shape, dx, step, dy, end, outer_end, displacement);
 }
 
 void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
@@ -278,6 +319,7 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            sum,
                                                            lowest,
                                                            highest,
+                                                           craterRow,
                                                            lowerAlong,
                                                            hideAbove,
                                                            overlap,

@@ -6,6 +6,7 @@
 
 #include "shared/base/assert.h"
 #include "shared/base/hash.h"
+#include "shared/base/kernels.h"
 #include "shared/world/pack.h"
 
 namespace spoor {
@@ -155,12 +156,16 @@ void CraterSet::addTo(std::span<rules::CraterSum> sums, const Lattice& lattice, 
   const CellBox box = craterBox(cell_q_, width_cells_, height_cells_, crater);
   const auto [x0, x1] = Lattice::samplesIn(lattice.x, lattice.stride, lattice.columns, box.x0, box.x1);
   const auto [y0, y1] = Lattice::samplesIn(lattice.y, lattice.stride, lattice.rows, box.y0, box.y1);
+  if (x0 >= x1) return;
+  std::vector<std::int32_t> displacement(std::size_t(x1 - x0));
+  const std::int32_t dx = (lattice.x + x0 * lattice.stride) * cell_q_ + cell_q_ / 2 - shape.x;
   for (std::int32_t row = y0; row < y1; ++row) {
     const std::int32_t dy = (lattice.y + row * lattice.stride) * cell_q_ + cell_q_ / 2 - shape.y;
-    rules::CraterSum* sum = sums.data() + std::size_t(row) * std::size_t(lattice.columns);
-    for (std::int32_t column = x0; column < x1; ++column) {
-      const std::int32_t dx = (lattice.x + column * lattice.stride) * cell_q_ + cell_q_ / 2 - shape.x;
-      sum[column] = rules::withCrater(sum[column], rules::craterDisplacement(shape, dx, dy), shape.rim);
+    kernels().craterRow(shape, dx, lattice.stride * cell_q_, dy, x1 - x0, displacement.data());
+    rules::CraterSum* sum = sums.data() + std::size_t(row) * std::size_t(lattice.columns) + x0;
+    for (const std::int32_t change : displacement) {
+      *sum = rules::withCrater(*sum, change, shape.rim);
+      ++sum;
     }
   }
 }
