@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "shared/base/kernels.h"
 #include "shared/base/statistics.h"
 #include "shared/world/dormant_ground.h"
 #include "shared/world/tile_store.h"
@@ -88,12 +89,35 @@ void measureProfile(Report& report) {
   std::printf("profile, %zu samples of craters of any size up to R3 = 838 m, 105 m deep and high\n", kCount);
   std::printf("  largest error %.3f units of 0.1 mm, root of the mean square %.3f (rounding alone: 0.500, 0.289)\n",
               worst, std::sqrt(squares / kCount));
-  std::printf("  one processor: double %.0f ns, fixed point %.0f (ratio %.2f), with noise %.0f (%.2f)\n\n", real_ns,
+  std::printf("  one processor: double %.0f ns, fixed point %.0f (ratio %.2f), with noise %.0f (%.2f)\n", real_ns,
               fixed_ns, fixed_ns / real_ns, noisy_ns, noisy_ns / real_ns);
+  const double row_ns = rowNanoseconds(0, report), noisy_row_ns = rowNanoseconds(10000, report);
+  std::printf("  rows of cells (%s): %.0f ns (ratio %.2f), with noise %.0f (%.2f)\n\n", kernels().name, row_ns,
+              row_ns / real_ns, noisy_row_ns, noisy_row_ns / real_ns);
   if (worst >= 1) report.faults.push_back("craters: fixed point is off by " + std::to_string(worst) + " units");
 }
 
 // ---- scenes
+
+/// Nanoseconds a cell of whole rows through a crater, by the fastest kernels.
+double rowNanoseconds(int noise_q16, Report& report) {
+  const auto shape = rules::craterShape(0, 0, 30000, 60000, 5000, 20000, 7, noise_q16, 0);
+  constexpr int kStep = 250, kSide = 720;  // cells of 25 mm across all of it
+  std::vector<std::int32_t> row(kSide);
+  const auto start = Clock::now();
+  std::int64_t sum = 0;
+  for (int y = 0; y < kSide; ++y) {
+    kernels().craterRow(shape, -kStep * kSide / 2, kStep, (y - kSide / 2) * kStep, kSide, row.data());
+    for (const std::int32_t change : row) sum += change;
+  }
+  const double time_ms = millisecondsSince(start);
+  std::int64_t expected = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      expected += rules::craterDisplacement(shape, (x - kSide / 2) * kStep, (y - kSide / 2) * kStep);
+  if (sum != expected) report.faults.push_back("craters: rows differ from the rule");
+  return time_ms * 1e6 / (double(kSide) * kSide);
+}
 
 /// A map with room for a disc in its middle.
 ScenePack makeField(double disc_m, double cell_m, double hash_cell_m) {
@@ -132,6 +156,67 @@ std::vector<Crater> throwCraters(const ScenePack& pack, double disc_m, std::size
     crater.id = std::uint32_t(i);
   }
   return craters;
+}
+
+// ---- volume
+
+/// What a set of craters adds to the map, and digs out of it, 0.1 mm * cells.
+struct Volume {
+  std::int64_t sum = 0, dug = 0;
+};
+
+Volume volumeOf(const ScenePack& pack, const std::vector<Crater>& craters) {
+  CraterSet set(pack);
+  set.add(craters);
+  std::vector<std::int32_t> row(std::size_t(pack.width_cells));
+  Volume volume;
+  for (std::int32_t y = 0; y < pack.height_cells; ++y) {
+    set.fill(0, y, 1, pack.width_cells, 1, row);
+    for (const std::int32_t change : row) {
+      volume.sum += change;
+      volume.dug -= std::min(change, 0);
+    }
+  }
+  return volume;
+}
+
+/// What cells, noise and overlap leave over of craters whose profile integrates to zero.
+void measureBalance() {
+  constexpr double kCell_m = 0.05;
+  std::printf("balanced craters on cells of %.2f m: volume left over, percent of what is dug out\n", kCell_m);
+  std::printf("  %6s %10s %12s %12s %18s %20s\n", "R3, m", "dug, m3", "no noise", "noise 0.15", "noise 0.5",
+              "two, half apart");
+  for (const double radius_m : {0.5, 2.5, 10.0, 40.0}) {
+    const ScenePack pack = makeField(4 * radius_m, kCell_m, 75);
+    Crater crater;
+    crater.x_q = crater.y_q = pack.width_cells * pack.cell_q / 2;
+    const auto outer_q = std::int32_t(std::lround(radius_m * rules::kUnitsPerMetre));
+    crater.crest_radius_q = outer_q * 2 / 3;
+    crater.inner_radius_q = 2 * crater.crest_radius_q - outer_q;
+    crater.depth_q = outer_q / 4;
+    crater.rim_height_q = balancedRimHeight(crater.inner_radius_q, crater.crest_radius_q, crater.depth_q);
+    crater.tick = 1;
+    const auto percent = [](const Volume& volume) { return 100.0 * double(volume.sum) / double(volume.dug); };
+    const Volume plain = volumeOf(pack, {crater});
+    std::printf("  %6.1f %10.3f %12.4f", radius_m, double(plain.dug) / rules::kUnitsPerMetre * kCell_m * kCell_m,
+                percent(plain));
+    for (const double noise : {0.15, 0.5}) {
+      // The mean of what eight seeds leave over, by size: its sign is chance.
+      double left = 0;
+      for (std::uint16_t seed = 0; seed < 8; ++seed) {
+        Crater rough = crater;
+        rough.noise_seed = seed;
+        rough.noise_q16 = std::uint16_t(noise * 65536);
+        left += std::abs(percent(volumeOf(pack, {rough}))) / 8;
+      }
+      std::printf(" %15.2f", left);
+    }
+    Crater beside = crater;
+    beside.x_q += crater.crest_radius_q;
+    beside.id = 1;
+    std::printf(" %20.2f\n", percent(volumeOf(pack, {crater, beside})));
+  }
+  std::printf("\n");
 }
 
 // ---- figure 7
@@ -333,6 +418,7 @@ void measureLazy(Report& report) {
 
 void measureCraters(const Settings&, Report& report) {
   measureProfile(report);
+  measureBalance();
   measureMemory();
   measureHash(report);
   measureLazy(report);
