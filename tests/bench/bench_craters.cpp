@@ -60,6 +60,26 @@ Sample drawSample(std::mt19937& engine, bool noise) {
   return sample;
 }
 
+/// Nanoseconds a cell of whole rows through a crater, by the fastest kernels.
+double rowNanoseconds(int noise_q16, Report& report) {
+  const auto shape = rules::craterShape(0, 0, 30000, 60000, 5000, 20000, 7, noise_q16, 0);
+  constexpr int kStep = 250, kSide = 720;  // cells of 25 mm across all of it
+  std::vector<std::int32_t> row(kSide);
+  const auto start = Clock::now();
+  std::int64_t sum = 0;
+  for (int y = 0; y < kSide; ++y) {
+    kernels().craterRow(shape, -kStep * kSide / 2, kStep, (y - kSide / 2) * kStep, kSide, row.data());
+    for (const std::int32_t change : row) sum += change;
+  }
+  const double time_ms = millisecondsSince(start);
+  std::int64_t expected = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      expected += rules::craterDisplacement(shape, (x - kSide / 2) * kStep, (y - kSide / 2) * kStep);
+  if (sum != expected) report.faults.push_back("craters: rows differ from the rule");
+  return time_ms * 1e6 / (double(kSide) * kSide);
+}
+
 void measureProfile(Report& report) {
   constexpr std::size_t kCount = 1000000;
   std::mt19937 engine(11);
@@ -98,26 +118,6 @@ void measureProfile(Report& report) {
 }
 
 // ---- scenes
-
-/// Nanoseconds a cell of whole rows through a crater, by the fastest kernels.
-double rowNanoseconds(int noise_q16, Report& report) {
-  const auto shape = rules::craterShape(0, 0, 30000, 60000, 5000, 20000, 7, noise_q16, 0);
-  constexpr int kStep = 250, kSide = 720;  // cells of 25 mm across all of it
-  std::vector<std::int32_t> row(kSide);
-  const auto start = Clock::now();
-  std::int64_t sum = 0;
-  for (int y = 0; y < kSide; ++y) {
-    kernels().craterRow(shape, -kStep * kSide / 2, kStep, (y - kSide / 2) * kStep, kSide, row.data());
-    for (const std::int32_t change : row) sum += change;
-  }
-  const double time_ms = millisecondsSince(start);
-  std::int64_t expected = 0;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
-      expected += rules::craterDisplacement(shape, (x - kSide / 2) * kStep, (y - kSide / 2) * kStep);
-  if (sum != expected) report.faults.push_back("craters: rows differ from the rule");
-  return time_ms * 1e6 / (double(kSide) * kSide);
-}
 
 /// A map with room for a disc in its middle.
 ScenePack makeField(double disc_m, double cell_m, double hash_cell_m) {
