@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(sys.argv[1]).resolve() / "shaders"
+ROOT = pathlib.Path(sys.argv[1]).resolve()
 STAGES = {".comp": "comp", ".vert": "vert", ".tesc": "tesc", ".tese": "tese", ".frag": "frag"}
 # What the host defines (gl_programs.cpp), in every combination that makes another text.
 COMPACTS = [f"SPOOR_COMPACTS {compacts}" for compacts in (0, 1)]
@@ -65,7 +65,7 @@ def main():
         return 77
     found, count = [], 0
     with tempfile.TemporaryDirectory() as scratch:
-        for file in sorted(ROOT.rglob("*")):
+        for file in sorted([*(ROOT / "shaders").rglob("*"), *(ROOT / "tests").glob("*")]):
             if file.suffix not in STAGES:
                 continue
             for defines in DEFINES.get(file.name, [""]):

@@ -36,10 +36,12 @@ RandomWorld meeting(int ticks = kMeetingTicks) {
   return made;
 }
 
-Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& ticks) {
+using Craters = std::vector<std::vector<Crater>>;  // of every tick; empty: none in any
+
+Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& ticks, const Craters& craters = {}) {
   Hashes hashes;
-  for (const auto& poses : ticks) {
-    const auto result = simulation.step(poses);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const auto result = simulation.step(ticks[i], {}, craters.empty() ? std::vector<Crater>() : craters[i]);
     EXPECT_TRUE(result);
     hashes.push_back(result->update.state_hash);
   }
@@ -48,8 +50,9 @@ Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& tic
   return hashes;
 }
 
-Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options) {
-  return hashesOf(world.simulate(options), ticks);
+Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options,
+                const Craters& craters = {}) {
+  return hashesOf(world.simulate(options), ticks, craters);
 }
 
 Hashes hashesOn(const BackendCase& backend_case, const World& world, const std::vector<std::vector<Pose>>& ticks) {
@@ -211,10 +214,12 @@ TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
     RandomWorld random = randomWorld(seed, 12);
     SCOPED_TRACE(random.description);
     const World world(random.pack);
-    const Hashes expected = hashesOf(world, random.ticks, {.thread_count = 1});
+    const Hashes expected = hashesOf(world, random.ticks, {.thread_count = 1}, random.craters);
     const auto sets = availableKernels();
-    EXPECT_EQ(hashesOf(world, random.ticks, {.thread_count = 3, .kernels = sets[seed % sets.size()]}), expected);
-    EXPECT_EQ(hashesOf(world, random.ticks, {.thread_count = 2, .kernels = sets[0], .skip_settled = false}), expected);
+    const NativeOptions threads{.thread_count = 3, .kernels = sets[seed % sets.size()]};
+    const NativeOptions every_pair{.thread_count = 2, .kernels = sets[0], .skip_settled = false};
+    EXPECT_EQ(hashesOf(world, random.ticks, threads, random.craters), expected);
+    EXPECT_EQ(hashesOf(world, random.ticks, every_pair, random.craters), expected);
   }
 }
 

@@ -32,6 +32,12 @@ Changes changesOf(const RandomWorld& random) {
   return random.change == SIZE_MAX ? Changes{} : Changes{{random.change, random.changed}};
 }
 
+using Craters = std::vector<std::vector<Crater>>;  // of every tick; empty: none in any
+
+std::vector<Crater> cratersAt(const Craters& craters, std::size_t tick) {
+  return craters.empty() ? std::vector<Crater>() : craters[tick];
+}
+
 class GlBackends : public OnEveryBackend {};
 
 void compareResults(const Result<TickResult>& result, const Result<TickResult>& expected) {
@@ -52,18 +58,20 @@ void compareResults(const Result<TickResult>& result, const Result<TickResult>& 
 }
 
 /// Runs ticks on both and compares all that they tell.
-void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {}) {
+void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {},
+                  const Craters& craters = {}) {
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    const auto expected = native.step(ticks[i], changeAt(changes, i));
-    ASSERT_NO_FATAL_FAILURE(compareResults(simulation.step(ticks[i], changeAt(changes, i)), expected));
+    const auto expected = native.step(ticks[i], changeAt(changes, i), cratersAt(craters, i));
+    ASSERT_NO_FATAL_FAILURE(
+        compareResults(simulation.step(ticks[i], changeAt(changes, i), cratersAt(craters, i)), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
 }
 
 void compareWithNative(const BackendCase& backend_case, const World& world, const Ticks& ticks,
-                       const Changes& changes = {}) {
+                       const Changes& changes = {}, const Craters& craters = {}) {
   Simulation simulation = world.simulateOn(backend_case), native = world.simulate();
-  compareTicks(simulation, native, ticks, changes);
+  compareTicks(simulation, native, ticks, changes, craters);
 }
 
 /// A backend of its own. Throws as borrowBackend does.
@@ -90,7 +98,7 @@ TEST_P(GlBackends, RandomWorldsHaveNativesHashesChangesAndCounts) {
     RandomWorld random = randomWorld(seed, 10);
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
-    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks, changesOf(random)));
+    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks, changesOf(random), random.craters));
   }
 }
 
@@ -231,7 +239,7 @@ TEST_P(GlBackends, RowsOfAFewGroupsDispatchTheSame) {
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
     Simulation simulation(world.base, world.id, makeBackend(options)), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, random.ticks));
+    ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, random.ticks, {}, random.craters));
   }
 }
 
@@ -309,14 +317,15 @@ TEST_P(GlBackends, APoolThatHoldsAllSaysNothing) {
 }
 
 /// Begins every tick before the one before it is finished.
-void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {}) {
-  ASSERT_TRUE(simulation.begin(ticks[0], changeAt(changes, 0)));
+void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {},
+                       const Craters& craters = {}) {
+  ASSERT_TRUE(simulation.begin(ticks[0], changeAt(changes, 0), cratersAt(craters, 0)));
   for (std::size_t i = 1; i <= ticks.size(); ++i) {
     if (i < ticks.size()) {
-      const Status begun = simulation.begin(ticks[i], changeAt(changes, i));
+      const Status begun = simulation.begin(ticks[i], changeAt(changes, i), cratersAt(craters, i));
       ASSERT_TRUE(begun) << begun.error();
     }
-    const auto expected = native.step(ticks[i - 1], changeAt(changes, i - 1));
+    const auto expected = native.step(ticks[i - 1], changeAt(changes, i - 1), cratersAt(craters, i - 1));
     ASSERT_NO_FATAL_FAILURE(compareResults(simulation.finish(), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
@@ -331,7 +340,7 @@ TEST_P(OverlappedTicks, EqualTicksOneByOne) {
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
     Simulation simulation = world.simulateOn(GetParam()), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks, changesOf(random)));
+    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks, changesOf(random), random.craters));
   }
 }
 

@@ -19,6 +19,16 @@ std::uint64_t cellHash(int x, int y, Plane plane, std::int32_t value) {
   return rules::cellMixLow(key, value) + (std::uint64_t(rules::cellMixHigh(key, value)) << 32);
 }
 
+/// The smallest box that holds every cell of a tile for which `is` holds.
+template <typename Is>
+OracleBox boxWhere(Is is) {
+  OracleBox box{kSize, kSize, 0, 0};
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (is(x, y)) box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
+  return box;
+}
+
 }  // namespace
 
 Oracle::Oracle(const BaseTerrain& base, const PackId& id)
@@ -31,6 +41,8 @@ Oracle::Oracle(const BaseTerrain& base, const PackId& id)
   const auto tiles = std::size_t(extent_.x) * std::size_t(extent_.y);
   live_.assign(tiles, 0);
   wake_.assign(tiles, 0);
+  crater_sums_.assign(world_.height.size(), rules::craterSumOfNone());
+  cratered_.assign(world_.height.size(), 0);
   poses_ = initialState(id, base).poses;
   previous_poses_ = poses_;
 }
@@ -139,11 +151,15 @@ std::vector<Pose> Oracle::posesOfSubStep(const std::vector<Pose>& poses, int ste
   return result;
 }
 
-/// Active tiles: the woken ones, what lies around moving bodies where they stood and at every sub-step, every search
-/// domain of every sub-step; or simply all. A body that stands still takes part once what lies around it meets an
-/// active tile, and then its search domain may make more tiles active, and so on.
+/// Active tiles: the woken ones, live ones that this tick's craters meet, what lies around moving bodies where they
+/// stood and at every sub-step, every search domain of every sub-step; or simply all. A body that stands still takes
+/// part once what lies around it meets an active tile, and then its search domain may make more tiles active, and so
+/// on.
 std::vector<std::uint8_t> Oracle::plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const {
   std::vector<std::uint8_t> tiles = wokenTiles();
+  for (int y = 0; y < world_.rows; ++y)
+    for (int x = 0; x < world_.columns; ++x)
+      if (cratered_[world_.at(x, y)] != 0) tiles[tileIndex({x / kSize, y / kSize})] = 1;
   if (parameters_.active_areas == 0) std::ranges::fill(tiles, std::uint8_t(1));
   for (int step = 0; step <= sub_steps_; ++step) {
     const std::vector<Pose> now = posesOfSubStep(poses, step);
@@ -166,14 +182,20 @@ void Oracle::setActive(const std::vector<std::uint8_t>& tiles) {
     for (int x = 0; x < world_.columns; ++x) world_.active[world_.at(x, y)] = tiles[tileIndex({x / kSize, y / kSize})];
   for (int y = 0; y < extent_.y; ++y)
     for (int x = 0; x < extent_.x; ++x)
-      if (tiles[tileIndex({x, y})] != 0) {
-        active_tiles_.push_back({x, y});
-        live_[tileIndex({x, y})] = 1;
-      }
+      if (tiles[tileIndex({x, y})] != 0) active_tiles_.push_back({x, y});
+  for (const TileCoordinate tile : active_tiles_) {
+    if (isLive(tile)) continue;
+    live_[tileIndex(tile)] = 1;
+    for (int y = tile.y * kSize; y < (tile.y + 1) * kSize; ++y)
+      for (int x = tile.x * kSize; x < (tile.x + 1) * kSize; ++x)
+        crater_budget_ += world_.height[world_.at(x, y)] - base_height_[world_.at(x, y)];
+  }
 }
 
-void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters) {
+void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters,
+                  const std::vector<Crater>& craters) {
   parameters_ = parameters.value_or(parameters_);
+  addCraters(craters);
   std::vector<bool> takes_part(poses.size());
   sub_steps_ = 1;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -220,28 +242,32 @@ void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose
   oracleRelax(world_, parameters_, sweep_count);
 }
 
+/// The box, within the tile, of its cells that changed in either plane.
+OracleBox Oracle::changedBox(TileCoordinate tile, const DenseWorld& before) const {
+  return boxWhere([&](int x, int y) {
+    const std::size_t i = world_.at(tile.x * kSize + x, tile.y * kSize + y);
+    return world_.height[i] != before.height[i] || world_.compacted[i] != before.compacted[i];
+  });
+}
+
+/// The box, within the tile, of this tick's craters.
+OracleBox Oracle::crateredBox(TileCoordinate tile) const {
+  return boxWhere([&](int x, int y) { return cratered_[world_.at(tile.x * kSize + x, tile.y * kSize + y)] != 0; });
+}
+
 /// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box
-/// of its cells that changed in either plane.
+/// of what changed. The box of craters counts as changed too.
 void Oracle::wake(const DenseWorld& before) {
   const int reach = std::clamp(parameters_.sweeps_per_tick, 1, kSize);
   for (const TileCoordinate tile : active_tiles_) {
-    int x0 = kSize, y0 = kSize, x1 = -1, y1 = -1;
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) {
-        const std::size_t i = world_.at(tile.x * kSize + x, tile.y * kSize + y);
-        if (world_.height[i] == before.height[i] && world_.compacted[i] == before.compacted[i]) continue;
-        x0 = std::min(x0, x);
-        x1 = std::max(x1, x);
-        y0 = std::min(y0, y);
-        y1 = std::max(y1, y);
-      }
     WakeMask mask = 0;
-    for (int dy = -1; dy <= 1 && x1 >= 0; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const bool near_x = dx == 0 || (dx < 0 ? x0 : kSize - 1 - x1) < reach;
-        const bool near_y = dy == 0 || (dy < 0 ? y0 : kSize - 1 - y1) < reach;
-        if (near_x && near_y) mask = WakeMask(mask | 1 << ((dy + 1) * 3 + dx + 1));
-      }
+    for (const OracleBox& box : {changedBox(tile, before), crateredBox(tile)})
+      for (int dy = -1; dy <= 1 && !box.empty(); ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const bool near_x = dx == 0 || (dx < 0 ? box.x0 : kSize - box.x1) < reach;
+          const bool near_y = dy == 0 || (dy < 0 ? box.y0 : kSize - box.y1) < reach;
+          if (near_x && near_y) mask = WakeMask(mask | 1 << ((dy + 1) * 3 + dx + 1));
+        }
     wake_[tileIndex(tile)] = mask;
   }
 }
@@ -265,6 +291,8 @@ std::uint64_t Oracle::stateHash() const {
   rest.put(id_.low);
   rest.put(id_.high);
   putParameters(rest, parameters_);
+  rest.put(std::uint32_t(records_.size()));
+  rest.put(cratersHash());
   rest.put(std::uint32_t(poses_.size()));
   for (const auto* poses : {&poses_, &previous_poses_})
     for (const Pose& pose : *poses) {
@@ -276,6 +304,7 @@ std::uint64_t Oracle::stateHash() const {
 
 Ledger Oracle::ledger() const {
   Ledger ledger;
+  ledger.craters = crater_budget_;
   for (int y = 0; y < world_.rows; ++y)
     for (int x = 0; x < world_.columns; ++x) {
       if (!isLive({x / kSize, y / kSize})) continue;

@@ -10,8 +10,9 @@
 
 namespace spoor::test {
 
-/// A whole world as plain arrays, padded to whole tiles. Slow and obvious on purpose: what the backends are compared
-/// with. Cells outside the world hold height 0 and no soil, and nothing ever moves into or out of them.
+/// A whole world as plain arrays, dormant ground too, padded to whole tiles. Slow and obvious on purpose: what the
+/// backends are compared with. Cells outside the world hold height 0 and no soil, and nothing ever moves into or out of
+/// them.
 struct DenseWorld {
   int columns = 0, rows = 0;                             // of the arrays: whole tiles
   int inside_columns = 0, inside_rows = 0;               // of the world
@@ -90,8 +91,10 @@ class Oracle {
  public:
   explicit Oracle(const BaseTerrain& base, const PackId& id = {});
 
-  /// `poses` must be valid, and so must be `parameters`, which hold from this tick on.
-  void step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters = {});
+  /// `poses` must be valid, and so must be `parameters`, which hold from this tick on, and `craters`, whose tick and id
+  /// are set here.
+  void step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters = {},
+            const std::vector<Crater>& craters = {});
 
   std::uint64_t stateHash() const;
   Ledger ledger() const;
@@ -107,6 +110,8 @@ class Oracle {
   std::int64_t keptBack() const { return kept_back_; }
   const DenseWorld& world() const { return world_; }
   const Parameters& parameters() const { return parameters_; }
+  /// All so far, with their ticks and ids.
+  const std::vector<Crater>& craters() const { return records_; }
   int subSteps() const { return sub_steps_; }
 
  private:
@@ -123,8 +128,14 @@ class Oracle {
   std::vector<Pose> posesOfSubStep(const std::vector<Pose>& poses, int step) const;
   std::vector<std::uint8_t> plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const;
   void setActive(const std::vector<std::uint8_t>& tiles);
+  void addCraters(const std::vector<Crater>& craters);
+  void addToSums(const Crater& crater);
+  void markLiveBox(const Crater& crater);
+  std::uint64_t cratersHash() const;
   void subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count);
   void drawBodies(const std::vector<bool>& which, const std::vector<Pose>& poses);
+  OracleBox changedBox(TileCoordinate tile, const DenseWorld& before) const;
+  OracleBox crateredBox(TileCoordinate tile) const;
   void wake(const DenseWorld& before);
 
   const BaseTerrain* base_;
@@ -135,6 +146,10 @@ class Oracle {
   std::vector<std::int32_t> base_height_;
   std::vector<std::uint8_t> live_;  // [tiles]
   std::vector<WakeMask> wake_;      // [tiles]
+  std::vector<Crater> records_;
+  std::vector<rules::CraterSum> crater_sums_;  // [rows * columns] of all records
+  std::vector<std::uint8_t> cratered_;         // [rows * columns] 1: live, and in the box of a crater of this tick
+  std::int64_t crater_budget_ = 0;             // what craters gave live tiles, 0.1 mm * cells
   std::vector<TileCoordinate> active_tiles_;
   std::vector<std::size_t> crowded_;
   std::vector<Pose> poses_, previous_poses_;

@@ -1,6 +1,8 @@
 // Calls every rule with numbers drawn from a seed and folds what comes back: one text, run by C++ and by GLSL.
 #ifndef SPOOR_TESTS_RULES_PROBE_H
 #define SPOOR_TESTS_RULES_PROBE_H
+#include "../shaders/rules/crater.h"
+#include "../shaders/rules/crater_hash.h"
 #include "../shaders/rules/displace.h"
 #include "../shaders/rules/exchange.h"
 #include "../shaders/rules/flood.h"
@@ -13,7 +15,7 @@
 
 SPOOR_RULES_BEGIN
 
-RULE_CONST kProbeCount = 17;
+RULE_CONST kProbeCount = 24;
 
 /// A number in [low, high] for draw `i` of a seed; high - low < 2^31.
 RULE int drawn(int seed, int i, int low, int high) {
@@ -160,6 +162,104 @@ RULE int probeSlope(int seed, int height_a, int height_b) {
                                drawnAmount(seed, 154, 1073741823)));
 }
 
+/// All 64 bits, without a division.
+RULE int foldedHalves(int sum, wide value) { return folded(folded(sum, wideLow(value)), wideLow(wideDown(value, 32))); }
+
+RULE int probeFraction(int seed) {
+  uint bits = mix32(uint(seed) * 0x85ebca77u + 160u);
+  uint more = mix32(bits);
+  uint shift = uint(drawn(seed, 161, 0, 31));
+  int sum = folded(seed, int(reciprocal(bits | 0x80000000u)));
+  sum = folded(sum, int(reciprocalRoot(bits >= 0x40000000u ? bits : bits | 0x40000000u)));
+  sum = folded(sum, int(rootQ31(more >> shift)));
+  sum = folded(sum, int(eighthTurn(more)));
+  sum = folded(folded(sum, topBit(more >> shift)), int(mulHigh(bits, more)));
+  int reach = 1 << drawn(seed, 162, 0, 24);
+  return folded(sum, int(turnOf(drawn(seed, 163, -reach, reach), drawn(seed, 164, -reach, reach))));
+}
+
+RULE int probeScaled(int seed) {
+  wide value = wideMul(drawnAmount(seed, 170, 2147483646), drawnAmount(seed, 172, 2147483646));
+  wide negative = wideMul(drawn(seed, 174, -1073741823, 1073741823), drawn(seed, 175, -1073741823, 1073741823));
+  int places = drawn(seed, 176, 0, 63);
+  int sum = foldedHalves(foldedHalves(seed, wideUp(negative, places)), wideDown(negative, places));
+  Scaled scaled = scaledFrom(value);
+  sum = folded(folded(sum, int(scaled.mantissa)), scaled.exponent);
+  sum = folded(sum, wideTop(value));
+  return wideZero(value) ? sum : folded(sum, int(scaledTo(value, scaled.exponent + drawn(seed, 177, 0, 2))));
+}
+
+/// A crater of any size, often one that is only just allowed.
+RULE CraterShape drawnCrater(int seed) {
+  int crest = 1 + drawnAmount(seed, 180, kCraterReachLimit - 1);
+  int kind = drawn(seed, 182, 0, 3);
+  int inner = kind == 0 ? 0 : (kind == 1 ? crest : drawn(seed, 183, 0, crest));
+  inner = maxInt(inner, 2 * crest - kCraterReachLimit);
+  int rim = drawn(seed, 184, 0, 3) == 0 ? kCraterHeightLimit : drawnAmount(seed, 185, kCraterHeightLimit);
+  int depth = drawn(seed, 187, 0, 3) == 0 ? kCraterHeightLimit : drawnAmount(seed, 188, kCraterHeightLimit);
+  int noise = drawn(seed, 190, 0, 2);
+  noise = noise == 0 ? 0 : (noise == 1 ? 65535 : drawn(seed, 191, 0, 65535));
+  return craterShape(drawn(seed, 192, -1000000, 1000000), drawn(seed, 193, -1000000, 1000000), inner, crest, rim, depth,
+                     drawn(seed, 194, 0, 65535), noise, drawn(seed, 195, 0, 1 << 20));
+}
+
+RULE int probeCraterShape(int seed) {
+  CraterShape c = drawnCrater(seed);
+  int sum = folded(folded(folded(folded(seed, c.x), c.y), c.inner), c.crest);
+  sum = folded(folded(folded(folded(sum, c.outer), c.rim), c.depth), c.amplitude);
+  sum = folded(folded(folded(sum, int(c.seed)), int(c.square_part)), c.square_exponent);
+  sum = folded(folded(folded(sum, int(c.band_part)), c.band_exponent), int(c.band_share));
+  return folded(folded(sum, c.id), c.reserved);
+}
+
+RULE int probeCraterNoise(int seed) {
+  uint bits = mix32(uint(seed) * 0x85ebca77u + 200u);
+  int turn = drawn(seed, 201, 0, 3);  // one in two at the seam
+  return craterNoise(bits, turn == 0 ? 0u : (turn == 1 ? 0xffffffffu : mix32(bits)), mix32(bits + 1u) >> 1);
+}
+
+/// Anywhere in its square, near the crest, near its end, on an axis, or far beyond.
+RULE int probeCrater(int seed) {
+  CraterShape c = drawnCrater(seed);
+  int sum = seed;
+  for (int i = 0; i < 6; ++i) {
+    int dx = drawn(seed, 210 + 8 * i, -c.outer, c.outer), dy = drawn(seed, 211 + 8 * i, -c.outer, c.outer);
+    if (i == 1 || i == 2) dx = c.crest + drawn(seed, 212 + 8 * i, -2, 2);
+    if (i == 3) dx = c.outer - drawn(seed, 213 + 8 * i, 0, 2);
+    if (i == 1 || i == 3) dy = drawn(seed, 214 + 8 * i, -1, 1);
+    if (i == 4) dx = drawn(seed, 215 + 8 * i, -1073741823, 1073741823);
+    if (i == 5) dx = dx >> drawn(seed, 216 + 8 * i, 0, 23);
+    if (i == 5) dy = dy >> drawn(seed, 217 + 8 * i, 0, 23);
+    sum = folded(sum, craterDisplacement(c, dx, dy));
+  }
+  return sum;
+}
+
+RULE int probeCraterSum(int seed) {
+  CraterSum sum = craterSumOfNone();
+  for (int i = 0; i < 6; ++i) {
+    int reach = 1 << drawn(seed, 260 + 4 * i, 0, 29);
+    sum = withCrater(sum, drawn(seed, 261 + 4 * i, -reach, reach), drawnAmount(seed, 262 + 4 * i, kCraterHeightLimit));
+  }
+  int total = craterTotal(sum);
+  int bedrock = drawn(seed, 290, -kHeightLimit, 0);
+  int height = drawn(seed, 291, bedrock, kHeightLimit);
+  int result = folded(folded(folded(folded(seed, sum.depth), sum.rims), sum.highest), total);
+  return folded(result, craterGround(height, bedrock, total));
+}
+
+RULE int probeCraterHash(int seed) {
+  int side = 1 + drawnAmount(seed, 300, 1 << 29);
+  int size = 1 + drawnAmount(seed, 302, 2147483646);
+  int outer = 1 + drawnAmount(seed, 304, kCraterReachLimit - 1);
+  int centre =
+      drawn(seed, 306, 0, 3) == 0 ? maxInt(0, size - drawn(seed, 307, 1, 9)) : drawn(seed, 307, -outer, 2130706431);
+  int first = craterFirstCell(centre, outer, side), last = craterLastCell(centre, outer, side, size);
+  int sum = folded(folded(seed, first), last);
+  sum = folded(sum, craterBucket(first, last, (1 << drawn(seed, 309, 0, 30)) - 1));
+  return folded(folded(sum, int(craterTag(first, last))), craterCapacity(drawnAmount(seed, 310, 1 << 30)));
+}
+
 /// Result number `which` (0 .. kProbeCount - 1) for a seed.
 RULE int probeRule(int which, int seed) {
   int height_a = drawn(seed, 60, -kHeightLimit, kHeightLimit);
@@ -179,7 +279,7 @@ RULE int probeRule(int which, int seed) {
   if (which == 6) return roomBeneath(height_a, height_b, threshold);
   if (which == 7)
     return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b,
-                              drawn(seed, 95, -kHeightLimit, kHeightLimit), threshold);
+                       drawn(seed, 95, -kHeightLimit, kHeightLimit), threshold);
   if (which == 8)
     return nearestSwitch(small, drawn(seed, 67, -3000, 0), drawn(seed, 68, -3000, 3000), drawn(seed, 69, 1, 3000),
                          drawn(seed, 70, -3000, 3000));
@@ -194,6 +294,13 @@ RULE int probeRule(int which, int seed) {
   if (which == 13) return probeSpread(seed);
   if (which == 14) return probeFlow(seed);
   if (which == 15) return probeSlope(seed, height_a, height_b);
+  if (which == 16) return probeFraction(seed);
+  if (which == 17) return probeScaled(seed);
+  if (which == 18) return probeCraterShape(seed);
+  if (which == 19) return probeCraterNoise(seed);
+  if (which == 20) return probeCrater(seed);
+  if (which == 21) return probeCraterSum(seed);
+  if (which == 22) return probeCraterHash(seed);
   int request = drawn(seed, 73, 1, kHeightLimit);
   return grantedShare(request, drawn(seed, 74, 0, kHeightLimit), wideAdd(wideFrom(request), wideMul(small, threshold)));
 }

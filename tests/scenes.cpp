@@ -186,6 +186,61 @@ std::string describe(const Parameters& p) {
   return text.str();
 }
 
+Crater randomCrater(const ScenePack& pack, std::uint32_t seed, int reach_q) {
+  std::mt19937 engine(seed * 2246822519u + 7);
+  const auto pick = [&engine](std::int64_t low, std::int64_t high) {
+    return std::int32_t(low + std::int64_t(engine() % std::uint32_t(high - low + 1)));
+  };
+  const auto oneOf = [&](std::initializer_list<std::int32_t> values) {
+    return *(values.begin() + pick(0, int(values.size()) - 1));
+  };
+  Crater crater;
+  const std::int32_t outer = std::max(1, pick(1, reach_q) >> oneOf({0, 0, 1, 2, 3, 12}));
+  crater.crest_radius_q = std::max(1, oneOf({outer, outer * 2 / 3, (outer + 1) / 2}));
+  crater.inner_radius_q = std::clamp(2 * crater.crest_radius_q - outer, 0, crater.crest_radius_q);
+  crater.depth_q = oneOf({0, 1, outer / 5, outer / 2, pick(0, 20000), rules::kCraterHeightLimit});
+  crater.rim_height_q = oneOf({0, 1, outer / 12, pick(0, 9000), crater.depth_q / 3});
+  crater.noise_seed = std::uint16_t(pick(0, 65535));
+  crater.noise_q16 = std::uint16_t(oneOf({0, 0, 9000, 30000, 65535}));
+  const std::int32_t margin = std::int32_t(crater.outerRadius());
+  crater.x_q = pick(-margin, std::int64_t(pack.width_cells) * pack.cell_q + margin - 1);
+  crater.y_q = pick(-margin, std::int64_t(pack.height_cells) * pack.cell_q + margin - 1);
+  return crater;
+}
+
+namespace {
+
+/// Draws the craters of a random world; none in every third.
+void addCraters(RandomWorld& world, std::uint32_t seed) {
+  world.craters.resize(world.ticks.size());
+  if (seed % 3 == 2) return;
+  std::mt19937 engine(seed + 0x5eed);
+  const auto below = [&engine](int n) { return int(engine() % std::uint32_t(n)); };
+  const auto oneIn = [&below](int n) { return below(n) == 0; };
+  ScenePack& pack = world.pack;
+  const int reach_q = pack.cell_q * (oneIn(3) ? 60 : 12);
+  pack.crater_limits.radius_q = reach_q;
+  pack.crater_limits.hash_cell_q = std::max((reach_q + 15) / 16, below(9) * pack.cell_q);
+  for (std::size_t tick = 0; tick < world.ticks.size(); ++tick) {
+    const int count = oneIn(3) ? 1 + below(oneIn(4) ? 9 : 2) : 0;
+    for (int i = 0; i < count; ++i) {
+      Crater crater = randomCrater(pack, std::uint32_t(engine()), reach_q);
+      const Pose& pose = world.ticks[tick][engine() % world.ticks[tick].size()];
+      const Crater moved{.x_q = pose.x_q,
+                         .y_q = pose.y_q,
+                         .inner_radius_q = crater.inner_radius_q,
+                         .crest_radius_q = crater.crest_radius_q};
+      if (oneIn(3) && validateCrater(pack, moved)) {  // under a body
+        crater.x_q = pose.x_q;
+        crater.y_q = pose.y_q;
+      }
+      world.craters[tick].insert(world.craters[tick].end(), oneIn(5) ? 2 : 1, crater);
+    }
+  }
+}
+
+}  // namespace
+
 RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
   std::mt19937 engine(seed);
   const auto pick = [&engine](int low, int high) { return low + int(engine() % std::uint32_t(high - low + 1)); };
@@ -228,11 +283,14 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
     world.ticks.push_back(poses);
   }
   if (pick(0, 2) == 0) world.change = std::size_t(pick(0, tick_count - 1));
+  addCraters(world, seed);
+  std::size_t crater_count = 0;
+  for (const auto& craters : world.craters) crater_count += craters.size();
   std::ostringstream text;
   text << "seed " << seed << ": " << width << " x " << height << " cells of " << pack.cell_q << ", soil "
        << pack.soil_depth_q << ", " << describe(pack.parameters);
   if (world.change != SIZE_MAX) text << "; in tick " << world.change + 1 << " now " << describe(world.changed);
-  text << "; bodies:";
+  text << "; " << crater_count << " craters; bodies:";
   for (const Body& body : pack.bodies) text << ' ' << body.name;
   world.description = text.str();
   return world;
@@ -261,10 +319,13 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count) {
       return AssertionFailure() << "tile (" << at.x << ", " << at.y << ") has wake mask " << tile->wake_mask << ", not "
                                 << oracle.wakeMask(at);
   }
+  if (state.craters.size() != oracle.craters().size())
+    return AssertionFailure() << state.craters.size() << " craters, not " << oracle.craters().size();
   if (state.ledger != oracle.ledger())
     return AssertionFailure() << "ledger: ground " << state.ledger.ground << " and compacted " << state.ledger.compacted
-                              << " of " << state.ledger.initial << ", not " << oracle.ledger().ground << " and "
-                              << oracle.ledger().compacted << " of " << oracle.ledger().initial;
+                              << " of " << state.ledger.initial << " and craters' " << state.ledger.craters << ", not "
+                              << oracle.ledger().ground << " and " << oracle.ledger().compacted << " of "
+                              << oracle.ledger().initial << " and " << oracle.ledger().craters;
   if (stateHash(state) != oracle.stateHash()) return AssertionFailure() << "state hash differs";
   return ::testing::AssertionSuccess();
 }

@@ -55,18 +55,26 @@ Parameters randomParameters(std::uint32_t seed);
 /// All of them, in words and numbers.
 std::string describe(const Parameters& parameters);
 
+/// A crater about as large as `reach_q`, or much smaller, anywhere on a map or over its border. Valid where the pack
+/// allows an R3 of `reach_q`.
+Crater randomCrater(const ScenePack& pack, std::uint32_t seed, int reach_q);
+
 /// A small world of a seed: its size is a multiple of nothing, its ground, parameters and bodies are anything, and the
-/// bodies wander, turn, rise and fall, some faster than a cell a tick, some out of the world.
+/// bodies wander, turn, rise and fall, some faster than a cell a tick, some out of the world. In most of them craters
+/// appear: small and large, alone and many in a tick, some twice, some over the border, some under bodies.
 struct RandomWorld {
   ScenePack pack;
   std::vector<std::vector<Pose>> ticks;  // poses of every tick
   std::size_t change = SIZE_MAX;         // index of the tick from which on `changed` holds
   Parameters changed;
 
+  std::vector<std::vector<Crater>> craters;  // of every tick
+
   /// What a tick is given besides its poses.
   std::optional<Parameters> changeAt(std::size_t tick) const {
     return tick == change ? std::optional(changed) : std::nullopt;
   }
+  const std::vector<Crater>& cratersAt(std::size_t tick) const { return craters[tick]; }
 
   std::string description;
 };

@@ -35,9 +35,9 @@ void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
   Simulation simulation = world.simulateOn(backend_case);
   Oracle oracle(world.base, world.id);
   for (std::size_t tick = 0; tick < random.ticks.size(); ++tick) {
-    const auto result = simulation.step(random.ticks[tick], random.changeAt(tick));
+    const auto result = simulation.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick));
     ASSERT_TRUE(result) << result.error();
-    oracle.step(random.ticks[tick], random.changeAt(tick));
+    oracle.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick));
     ASSERT_TRUE(sameState(simulation.state(), oracle)) << "tick " << result->update.tick;
     ASSERT_EQ(simulation.state().ledger.error(), 0) << "tick " << result->update.tick;
     ASSERT_NO_FATAL_FAILURE(checkCounts(result->effect, oracle));

@@ -25,10 +25,12 @@ RULE uint craterTag(int cell_x, int cell_y) { return (uint(cell_x) & 0xffffu) | 
 RULE int craterCapacity(int count) { return count + (count >> 1) + 2; }
 
 /// First and last cell, along one axis, that a crater meets; none where first > last.
+/// Ranges: those of a valid crater; centre + outer may be more than an int holds.
 /// @param size  of the map
 RULE int craterFirstCell(int centre, int outer, int side) { return maxInt(centre - outer, 0) / side; }
 RULE int craterLastCell(int centre, int outer, int side, int size) {
-  return centre + outer < 0 || centre - outer >= size ? -1 : minInt(centre + outer, size - 1) / side;
+  if (centre < -outer || centre - outer >= size) return -1;
+  return (centre > size - 1 - outer ? size - 1 : centre + outer) / side;
 }
 
 SPOOR_RULES_END

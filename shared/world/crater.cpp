@@ -121,7 +121,7 @@ std::int32_t balancedRimHeight(std::int32_t inner_radius_q, std::int32_t crest_r
   // In shares of R2^2, Q30: 0.35 + band * ((2 - 3 pi / 8) + 0.35 band) with band = m / R2.
   constexpr std::int64_t kOne = std::int64_t(1) << 30;
   constexpr std::int64_t kSmooth = 375809638;  // 0.35
-  constexpr std::int64_t kRound = 882511886;   // 2 - 3 pi / 8
+  constexpr std::int64_t kRound = 882511363;   // 2 - 3 pi / 8
   const std::int64_t band = (std::int64_t(crest_radius_q - inner_radius_q) << 30) / crest_radius_q;
   const std::int64_t whole = kSmooth + band * (kRound + kSmooth * band / kOne) / kOne;
   constexpr std::int64_t kCavity = 161061274;  // 0.15
