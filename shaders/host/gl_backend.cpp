@@ -214,7 +214,10 @@ class GlBackend final : public Backend {
     StageTimer timer(tick.effect.stage_ms, Stage::active);
     if (loaded_ != tick.pack) {
       meshes_ = makeMeshTable(*tick.pack);
-      if (Status status = device_->stages.load(meshes_); !status) return status;
+      const bool with_craters = tick.pack->crater_limits.radius_q > 0;
+      if (Status status = device_->stages.load(meshes_, with_craters); !status) return status;
+      if (with_craters)
+        if (Status status = device_->craters.compile(); !status) return status;
       loaded_ = tick.pack;
     }
     auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick, compactsIn(tick.plan));

@@ -61,6 +61,15 @@ GlCraterTable::GlCraterTable(std::int64_t block_bytes)
 
 GlCraterTable::~GlCraterTable() = default;
 
+Status GlCraterTable::compile() {
+  try {
+    if (programs_ == nullptr) programs_ = std::make_unique<Programs>();
+  } catch (const std::runtime_error& error) {
+    return Error{error.what()};
+  }
+  return {};
+}
+
 Status GlCraterTable::update(const CraterSet& craters, std::int32_t cell_q) {
   Status status = bringTo(craters, cell_q);
   if (!status) sent_count_ = inserted_count_ = generation_ = 0;
@@ -72,11 +81,7 @@ Status GlCraterTable::bringTo(const CraterSet& craters, std::int32_t cell_q) {
   if (craters.size() < sent_count_) sent_count_ = inserted_count_ = generation_ = 0;
   if (craters.size() == 0) return sendHead(kNone), glStatus("sending craters");
   if (craters.size() == inserted_count_ && table.generation == generation_) return {};
-  try {
-    if (programs_ == nullptr) programs_ = std::make_unique<Programs>();
-  } catch (const std::runtime_error& error) {
-    return Error{error.what()};
-  }
+  if (Status status = compile(); !status) return status;
   if (Status status = sendShapes(craters.records().subspan(sent_count_)); !status) return status;
   sendHead({table.side_q, table.width_q, table.height_q, table.mask(), int(craters.size()), cell_q, {}});
   if (table.generation != generation_)

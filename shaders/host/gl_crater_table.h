@@ -17,6 +17,9 @@ class GlCraterTable {
   explicit GlCraterTable(std::int64_t block_bytes);
   ~GlCraterTable();
 
+  /// Compiles the kernels; else the first update() with craters does. Errors: one does not compile.
+  [[nodiscard]] Status compile();
+
   /// Brings the device to the set, which is the one of the last call with more craters, or, after forget(), another.
   /// New craters cost their own entries, but where the set's table was built anew. Only queues work; changes the
   /// current program and the first storage bindings.

@@ -29,14 +29,18 @@ int mostEntries(const CraterTables& tiles, const CraterTable& table, std::int32_
 
 }  // namespace
 
-Status GlStages::craters(const TickTables& tick, const TilePool& pool, const CraterSet& craters, std::size_t first_new,
-                         const GlCraterTable& table, std::int32_t cell_q) {
-  const GlProgram* program = nullptr;
+Result<const GlProgram*> GlStages::craterProgram() {
   try {
-    program = &programs_.craters();
+    return &programs_.craters();
   } catch (const std::runtime_error& error) {
     return Error{error.what()};
   }
+}
+
+Status GlStages::craters(const TickTables& tick, const TilePool& pool, const CraterSet& craters, std::size_t first_new,
+                         const GlCraterTable& table, std::int32_t cell_q) {
+  const auto program = craterProgram();
+  if (!program) return Error{program.error()};
   const int most = mostEntries(tick.craters, craters.table(), cell_q);
   const std::int64_t cells = tick.craters.cells;
   if (Status status = crater_changes_.reserve(cells * std::int64_t(sizeof(std::int32_t))); !status) return status;
@@ -50,7 +54,7 @@ Status GlStages::craters(const TickTables& tick, const TilePool& pool, const Cra
   pool.height().bind(rules::kBindPoolHeight);
   pool.bedrock().bind(rules::kBindPoolBedrock);
   table.bind(rules::kBindCraterTable);
-  use(*program);
+  use(**program);
   setUniform(2, int(first_new));
   for (int entry = 0; entry == 0 || entry < most; entry += rules::kCraterEntriesAtOnce) {
     setUniform(3, entry);

@@ -57,7 +57,9 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       crater_changes_("what craters change", limits.storage_block_bytes),
       crater_sums_("the sums of craters", limits.storage_block_bytes) {}
 
-Status GlStages::load(const MeshTable& meshes) {
+Status GlStages::load(const MeshTable& meshes, bool with_craters) {
+  if (with_craters)
+    if (auto program = craterProgram(); !program) return Error{program.error()};
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
     if (Status status = to.reserve(std::int64_t(table.size()) * kCellBytes); !status) return status;
     if (!table.empty()) glNamedBufferSubData(to.name(), 0, std::int64_t(table.size()) * kCellBytes, table.data());

@@ -19,8 +19,9 @@ class GlStages {
   /// Throws std::runtime_error where a shader of the default methods does not compile or link.
   GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled);
 
-  /// Copies a pack's meshes to the device. Errors: too large for it.
-  [[nodiscard]] Status load(const MeshTable& meshes);
+  /// Copies a pack's meshes to the device, and compiles stage craters where there may be any, as no tick should wait
+  /// for that. Errors: too large for the device; it does not compile.
+  [[nodiscard]] Status load(const MeshTable& meshes, bool with_craters = false);
 
   /// Makes room for a tick and copies its tables to the device. Errors: the device has not the memory; a shader of the
   /// tick's methods does not compile.
@@ -64,6 +65,7 @@ class GlStages {
   const GrowingBuffer& compacted() const { return compacted_; }
 
  private:
+  Result<const GlProgram*> craterProgram();
   Status reserve(const TickTables& tick);
   static void setUniform(int location, int value) { glUniform1i(location, value); }
   static std::int64_t listOffset(const TickTables& tick, int list, std::size_t member);

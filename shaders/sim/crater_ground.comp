@@ -19,6 +19,17 @@ layout(location = 4) uniform int is_last;      // 1: sums are complete after thi
 const int kGroupsPerTile = kTileCells / (kGroup * kCraterLaneCells);
 shared uint gained[2];
 
+/// The next entry, from i on, of a record that may reach (x, y). A loop of its own: llvmpipe runs what a condition
+/// shuts out.
+int nextEntry(int i, int end, int x, int y, uint tag) {
+  for (; i < end; ++i) {
+    if (crater_entries[i].tag != tag) continue;
+    int record = crater_entries[i].record;
+    if (max(abs(x - crater_shapes[record].x), abs(y - crater_shapes[record].y)) <= crater_shapes[record].outer) break;
+  }
+  return i;
+}
+
 /// @param index  of the cell among those of all tiles' boxes
 /// @return       D(S) - D(S without new ones), where these sums are complete
 int changeAt(int x, int y, int index) {
@@ -28,9 +39,8 @@ int changeAt(int x, int y, int index) {
     after = crater_sums[2 * index + 1];
   }
   CraterRange range = cratersAt(x, y);
-  int end = min(range.end, range.first + first_entry + kCraterEntriesAtOnce);
-  for (int i = range.first + first_entry; i < end; ++i) {
-    if (crater_entries[i].tag != range.tag) continue;
+  int first = range.first + first_entry, end = min(range.end, first + kCraterEntriesAtOnce);
+  for (int i = nextEntry(first, end, x, y, range.tag); i < end; i = nextEntry(i + 1, end, x, y, range.tag)) {
     int record = crater_entries[i].record;
     CraterShape shape = crater_shapes[record];
     after = withCrater(after, craterDisplacement(shape, x - shape.x, y - shape.y), shape.rim);
@@ -42,21 +52,19 @@ int changeAt(int x, int y, int index) {
   return 0;
 }
 
-void changeCell(CraterTile tile, int cell) {
+/// @return  what the cell gained, + 2^31; 0 where it is not in the box
+uint changeCell(CraterTile tile, int cell_side, int cell) {
   ivec2 at = ivec2(cell % kTileSize, cell / kTileSize);
-  if (at.x < tile.x0 || at.y < tile.y0 || at.x >= tile.x1 || at.y >= tile.y1) return;  // it lies in the world, too
+  if (at.x < tile.x0 || at.y < tile.y0 || at.x >= tile.x1 || at.y >= tile.y1) return 0u;  // the box is in the world
   int index = tile.first_change + (at.y - tile.y0) * (tile.x1 - tile.x0) + at.x - tile.x0;
-  int half_cell = crater_head.cell / 2;
-  int change = changeAt((tile.tile_x0 + at.x) * crater_head.cell + half_cell,
-                        (tile.tile_y0 + at.y) * crater_head.cell + half_cell, index);
-  if (is_last == 0) return;
+  int change = changeAt((tile.tile_x0 + at.x) * cell_side + cell_side / 2,
+                        (tile.tile_y0 + at.y) * cell_side + cell_side / 2, index);
+  if (is_last == 0) return 0u;
   int height = pool_height[tile.slot * kTileCells + cell];
   int difference = change == 0 ? 0 : craterGround(height, pool_bedrock[tile.slot * kTileCells + cell], change) - height;
   crater_changes[index] = difference;
   if (difference != 0) pool_height[tile.slot * kTileCells + cell] = height + difference;
-  uint positive = uint(difference) + 0x80000000u;
-  atomicAdd(gained[0], positive & 0xffffu);
-  atomicAdd(gained[1], positive >> 16);
+  return uint(difference) + 0x80000000u;
 }
 
 void main() {
@@ -65,7 +73,15 @@ void main() {
   barrier();
   int owner = groupIndex() / kGroupsPerTile;
   int first = groupIndex() % kGroupsPerTile * kGroup * kCraterLaneCells + lane();
-  for (int i = 0; i < kCraterLaneCells; ++i) changeCell(crater_tiles[owner], first + i * kGroup);
+  CraterTile tile = crater_tiles[owner];
+  int cell_side = crater_head.cell;
+  uvec2 lane_gained = uvec2(0u);
+  for (int i = 0; i < kCraterLaneCells; ++i) {
+    uint cell_gained = changeCell(tile, cell_side, first + i * kGroup);
+    lane_gained += uvec2(cell_gained & 0xffffu, cell_gained >> 16);
+  }
+  atomicAdd(gained[0], lane_gained.x);
+  atomicAdd(gained[1], lane_gained.y);
   barrier();
   if (lane() < 2) atomicAdd(crater_tiles[owner].gained[lane()], gained[lane()]);
 }
