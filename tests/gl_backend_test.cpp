@@ -9,13 +9,11 @@
 #include <fstream>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 
 #include "shaders/host/gl_context.h"
 #include "shaders/host/shader_loader.h"
-#include "tests/gl_cases.h"
-#include "tests/scenes.h"
+#include "tests/gl_sessions.h"
 
 namespace spoor::test {
 namespace {
@@ -40,23 +38,6 @@ std::vector<Crater> cratersAt(const Craters& craters, std::size_t tick) {
 
 class GlBackends : public OnEveryBackend {};
 
-void compareResults(const Result<TickResult>& result, const Result<TickResult>& expected) {
-  ASSERT_TRUE(expected) << expected.error();
-  ASSERT_TRUE(result) << result.error();
-  const auto tick = "tick " + std::to_string(expected->update.tick);
-  ASSERT_EQ(result->update.state_hash, expected->update.state_hash) << tick;
-  ASSERT_EQ(result->update.tick, expected->update.tick);
-  ASSERT_EQ(result->update.poses, expected->update.poses) << tick;
-  ASSERT_EQ(result->update.tiles, expected->update.tiles) << tick;
-  ASSERT_EQ(result->ledger, expected->ledger) << tick;
-  ASSERT_EQ(result->ledger.error(), 0) << tick;
-  ASSERT_EQ(result->too_fast, expected->too_fast) << tick;
-  ASSERT_EQ(result->effect.penetrating_cells, expected->effect.penetrating_cells) << tick;
-  ASSERT_EQ(result->effect.domain_cells, expected->effect.domain_cells) << tick;
-  ASSERT_EQ(result->effect.active_cells, expected->effect.active_cells) << tick;
-  ASSERT_EQ(result->effect.kept_back, expected->effect.kept_back) << tick;
-}
-
 /// Runs ticks on both and compares all that they tell.
 void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {},
                   const Craters& craters = {}) {
@@ -72,13 +53,6 @@ void compareWithNative(const BackendCase& backend_case, const World& world, cons
                        const Changes& changes = {}, const Craters& craters = {}) {
   Simulation simulation = world.simulateOn(backend_case), native = world.simulate();
   compareTicks(simulation, native, ticks, changes, craters);
-}
-
-/// A backend of its own. Throws as borrowBackend does.
-std::unique_ptr<Backend> makeBackend(const GlOptions& options) {
-  auto backend = makeGlBackend(options);
-  if (!backend) throw std::runtime_error(backend.error());
-  return std::move(*backend);
 }
 
 std::vector<Pose> initialPoses(const World& world) { return initialState(world.id, world.base).poses; }
@@ -238,7 +212,7 @@ TEST_P(GlBackends, RowsOfAFewGroupsDispatchTheSame) {
     RandomWorld random = randomWorld(seed, 8);
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
-    Simulation simulation(world.base, world.id, makeBackend(options)), native = world.simulate();
+    Simulation simulation(world.base, world.id, makeOwnBackend(options)), native = world.simulate();
     ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, random.ticks, {}, random.craters));
   }
 }
@@ -290,7 +264,7 @@ std::vector<std::string> runInPoolOf(const BackendCase& backend_case, int pool_t
   options.say = [&said](const std::string& line) {
     if (line.find("pool") != std::string::npos) said.push_back(line);
   };
-  Simulation simulation(world.base, world.id, makeBackend(options)), native = world.simulate();
+  Simulation simulation(world.base, world.id, makeOwnBackend(options)), native = world.simulate();
   compareTicks(simulation, native, ticks);
   return said;
 }
@@ -360,7 +334,7 @@ TEST_P(GlBackends, OverlappedTicksInASmallPoolEqualTicksOneByOne) {
   const RoundTrip trip;
   GlOptions options = glOptionsOf(GetParam());
   options.pool_tiles = 2;
-  Simulation simulation(trip.world.base, trip.world.id, makeBackend(options)), native = trip.world.simulate();
+  Simulation simulation(trip.world.base, trip.world.id, makeOwnBackend(options)), native = trip.world.simulate();
   compareOverlapped(simulation, native, trip.ticks);
 }
 
@@ -374,7 +348,7 @@ TEST_P(GlBackends, CompactionThatBeginsAndEndsInOverlappedTicksInASmallPool) {
     SCOPED_TRACE(std::to_string(pool_tiles) + " tiles");
     GlOptions options = glOptionsOf(GetParam());
     options.pool_tiles = pool_tiles;
-    Simulation simulation(trip.world.base, trip.world.id, makeBackend(options)), native = trip.world.simulate();
+    Simulation simulation(trip.world.base, trip.world.id, makeOwnBackend(options)), native = trip.world.simulate();
     ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, trip.ticks, changes));
     EXPECT_GT(simulation.state().ledger.compacted, 0);
   }
@@ -395,7 +369,7 @@ TEST_P(GlBackends, AnyThreadMayRunATick) {
   RandomWorld random = randomWorld(26, 9);
   const World world(std::move(random.pack));
   std::unique_ptr<Backend> backend;
-  std::thread([&] { backend = makeBackend(glOptionsOf(GetParam())); }).join();
+  std::thread([&] { backend = makeOwnBackend(glOptionsOf(GetParam())); }).join();
   Simulation simulation(world.base, world.id, std::move(backend)), native = world.simulate();
   for (std::size_t i = 0; i < random.ticks.size(); i += 3) {
     const Ticks part(random.ticks.begin() + std::ptrdiff_t(i), random.ticks.begin() + std::ptrdiff_t(i + 3));
@@ -415,7 +389,7 @@ TEST_P(GlBackends, AMethodWhoseShaderDoesNotCompileFailsTheTickThatWantsItAndNoO
   std::ofstream(copy / "sim" / "flood_pass.comp") << "#version 450 core\nvoid main() { nonsense }\n";
   ASSERT_EQ(setenv("SPOOR_SHADERS", copy.c_str(), 1), 0);
   const RoundTrip trip;
-  Simulation simulation(trip.world.base, trip.world.id, makeBackend(glOptionsOf(GetParam())));
+  Simulation simulation(trip.world.base, trip.world.id, makeOwnBackend(glOptionsOf(GetParam())));
   EXPECT_TRUE(simulation.step(trip.ticks[0]));
   Parameters flooding = trip.world.pack.parameters;
   flooding.nearest = NearestSearch::jump_flooding;
@@ -461,7 +435,7 @@ TEST_P(GlBackends, WhatIsCurrentOnTheThreadStaysCurrent) {
   const EGLContext current = eglGetCurrentContext();
   ASSERT_NE(current, EGL_NO_CONTEXT);
   {
-    Simulation simulation(world.base, world.id, makeBackend(glOptionsOf(GetParam())));
+    Simulation simulation(world.base, world.id, makeOwnBackend(glOptionsOf(GetParam())));
     EXPECT_EQ(eglGetCurrentContext(), current) << "after it was made";
     for (const auto& poses : random.ticks) {
       ASSERT_TRUE(simulation.begin(poses));

@@ -26,6 +26,7 @@ constexpr std::int64_t kDisplaceBytes = 48;  // per penetrating cell: target, su
 constexpr std::int64_t kSlabPairs = rules::kSlabRows * rules::kTileSize / 2;
 constexpr std::int64_t kCompactionBytes = 16;  // per active cell: compacted soil in and out, and compared with the pool
 constexpr std::int64_t kHashBytes = 8;         // per active cell: compare with the pool
+constexpr std::int64_t kCraterBytes = 16;      // per cell that craters may change: height in and out, bedrock, change
 
 /// Bytes of the relaxation for each pair of cells visited.
 std::int64_t pairBytes(SlopeRule rule, RelaxSchedule schedule) {
@@ -44,11 +45,14 @@ std::int64_t pairBytes(SlopeRule rule, RelaxSchedule schedule) {
 
 const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
 
-void addBox(PlaneCells& cells, const TileChange& change, const std::vector<std::int32_t>& differences) {
-  for (int row = 0; row < change.height; ++row)
-    for (int column = 0; column < change.width; ++column)
-      cells[std::size_t((change.y + row) * rules::kTileSize + change.x + column)] +=
-          differences[std::size_t(row * change.width + column)];
+CellBox boxOf(const TileChange& change) {
+  return {change.x, change.y, change.x + change.width, change.y + change.height};
+}
+
+/// @param differences  of the box's cells, row-major
+void addBox(PlaneCells& cells, const CellBox& box, const std::int32_t* differences) {
+  for (int y = box.y0; y < box.y1; ++y)
+    for (int x = box.x0; x < box.x1; ++x) cells[std::size_t(y * rules::kTileSize + x)] += *differences++;
 }
 
 /// A tick between submit() and settle().
@@ -62,10 +66,15 @@ struct Submitted {
 
 /// What a tick left on the device for collect().
 struct Uncollected {
-  std::int64_t cells = 0;  // differences, of all changes in their order
-  std::vector<std::int64_t> first_of_change;
-  std::vector<char> compacts;  // [changes] do differences of compacted soil follow those of heights?
-  int readback = 0;            // which of the two
+  struct Place {
+    std::int64_t first = 0;  // of a change's differences
+    bool compacts = false;   // do those of compacted soil follow those of heights?
+    CellBox cratered;        // what new craters changed before; empty: nothing
+    std::int64_t first_cratered = 0;
+  };
+  std::int64_t cells = 0;     // differences, of all tiles, and then those of craters
+  std::vector<Place> places;  // [changes]
+  int readback = 0;           // which of the two
 };
 
 class GlBackend final : public Backend {
@@ -105,8 +114,8 @@ class GlBackend final : public Backend {
         StageTimer timer(tick.effect.stage_ms, Stage::active);
         tick.active = takeTiles(tick.plan, base, state, pool_);
       }
-      if (Status status = queueStages(tick); !status) {
-        device_->tiles.forget();  // fresh tiles are gone again
+      if (Status status = queueStages(tick, state.craters); !status) {
+        forgetDevice();  // fresh tiles are gone again
         return status;
       }
     }
@@ -124,7 +133,7 @@ class GlBackend final : public Backend {
     const CurrentContext current(*context_);
     if (!current.ok()) return Error{kNotCurrent.error()};
     if (Status status = fetchResults(tick); !status) {
-      device_->tiles.forget();  // the pool may be a tick ahead of the state, and fresh tiles are gone
+      forgetDevice();  // the pool may be a tick ahead of the state, and fresh tiles are gone
       return Error{status.error()};
     }
     commit(tick, state);
@@ -142,20 +151,22 @@ class GlBackend final : public Backend {
     const auto* cells = reinterpret_cast<const std::int32_t*>(device_->changed_cells[tick.readback].data());
     for (std::size_t i = 0; i < changes.size(); ++i) {
       TileChange& change = changes[i];
-      const std::int32_t* first = cells + tick.first_of_change[i];
+      const Uncollected::Place& place = tick.places[i];
+      const std::int32_t* first = cells + place.first;
       const int cell_count = change.width * change.height;
       Tile& tile = *state.tiles.find(change.at);
+      addBox(tile.height(), place.cratered, cells + place.first_cratered);
       change.difference.assign(first, first + cell_count);
-      addBox(tile.height(), change, change.difference);
-      if (tick.compacts[i] == 0) continue;
+      addBox(tile.height(), boxOf(change), first);
+      if (!place.compacts) continue;
       change.compaction.assign(first + cell_count, first + 2 * cell_count);
-      addBox(tile.makeCompacted(), change, change.compaction);
+      addBox(tile.makeCompacted(), boxOf(change), first + cell_count);
     }
     return {};
   }
 
   void forget() override {
-    device_->tiles.forget();
+    forgetDevice();
     submitted_.reset();
     uncollected_.clear();
     loaded_ = nullptr;
@@ -168,6 +179,7 @@ class GlBackend final : public Backend {
                         device_->changed_cells[1].bytes();
     memory.buffers = device_->stages.buffers();
     memory.buffers.push_back({"pool of live tiles", device_->tiles.deviceBytes()});
+    memory.buffers.push_back({"craters and their spatial hash", device_->craters.deviceBytes()});
     for (const BufferBytes& buffer : memory.buffers) memory.device_bytes += buffer.bytes;
     return memory;
   }
@@ -179,9 +191,11 @@ class GlBackend final : public Backend {
         : stages(limits, options.shape, schedule, options.skip_settled),
           tiles(
               limits.storage_block_bytes, options.pool_tiles, options.say ? options.say : [](const std::string&) {}),
+          craters(limits.storage_block_bytes),
           clock(!limits.software) {}
     GlStages stages;
     TilePool tiles;
+    GlCraterTable craters;
     StageClock clock;
     ReadbackBuffer results{"the tick's results on the host"};
     ReadbackBuffer changed_cells[2] = {ReadbackBuffer{"the changed cells on the host"},
@@ -189,30 +203,56 @@ class GlBackend final : public Backend {
     GlFence finished, copied[2];
   };
 
+  /// What the device holds is of no state.
+  void forgetDevice() {
+    device_->tiles.forget();
+    knows_craters_ = false;
+  }
+
   /// Brings a tick's tiles and tables to the device.
   Status prepare(Submitted& tick) {
     StageTimer timer(tick.effect.stage_ms, Stage::active);
     if (loaded_ != tick.pack) {
       meshes_ = makeMeshTable(*tick.pack);
-      if (Status status = device_->stages.load(meshes_); !status) return status;
+      const bool with_craters = tick.pack->crater_limits.radius_q > 0;
+      if (Status status = device_->stages.load(meshes_, with_craters); !status) return status;
+      if (with_craters)
+        if (Status status = device_->craters.compile(); !status) return status;
       loaded_ = tick.pack;
     }
     auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick, compactsIn(tick.plan));
     if (!slots) return Error{slots.error()};
-    tick.tables =
-        makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_), shape_);
+    tick.tables = makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_),
+                                 shape_, tick.active.cratered);
     if (Status status = device_->results.reserve(kHeadBytes + resultBytes(tick)); !status) return status;
     return device_->stages.begin(tick.tables);
   }
 
+  /// Brings the device's craters to the state's and queues what this tick's do. The others wait there for a tick that
+  /// has to do with craters.
+  Status queueCraters(const Submitted& tick, const CraterSet& craters) {
+    GlCraterTable& table = device_->craters;
+    if (!std::exchange(knows_craters_, true)) table.forget();
+    if (Status status = table.update(craters, tick.pack->cell_q); !status) return status;
+    return device_->stages.craters(tick.tables, device_->tiles, craters, tick.plan.first_new_crater, table,
+                                   tick.pack->cell_q);
+  }
+
+  std::int64_t copiedBytes() const { return device_->tiles.copiedBytes() + device_->craters.copiedBytes(); }
+  std::int64_t dispatchCount() const { return device_->stages.dispatchCount() + device_->craters.dispatchCount(); }
+
   /// Queues all stages of a tick, and the copy of their results to the host.
-  Status queueStages(Submitted& tick) {
+  Status queueStages(Submitted& tick, const CraterSet& craters) {
     GlStages& stages = device_->stages;
     StageClock& clock = device_->clock;
-    const std::int64_t copied_before = device_->tiles.copiedBytes(), dispatched_before = stages.dispatchCount();
+    const std::int64_t copied_before = copiedBytes(), dispatched_before = dispatchCount();
     if (Status status = prepare(tick); !status) return status;
     const TickTables& tables = tick.tables;
     clock.begin();
+    if (!tables.craters.tiles.empty()) {
+      if (Status status = queueCraters(tick, craters); !status) return status;
+      clock.end(Stage::craters);
+    }
     stages.gather(tables, device_->tiles);
     clock.end(Stage::active);
     if (tables.stood.cover.count > 0) stages.depth(tables, GlStages::kStood);
@@ -233,21 +273,29 @@ class GlBackend final : public Backend {
     stages.hash(tables, device_->tiles);
     clock.end(Stage::hash);
     tick.effect.bytes_moved = stages.domainBytes();
-    tick.effect.dispatches = stages.dispatchCount() - dispatched_before;
-    tick.effect.bytes_to_device = device_->tiles.copiedBytes() - copied_before + std::int64_t(tables.bytes.size());
+    tick.effect.dispatches = dispatchCount() - dispatched_before;
+    tick.effect.bytes_to_device = copiedBytes() - copied_before + std::int64_t(tables.bytes.size());
 
     if (Status status = glStatus("the stages"); !status) return status;
     // What the stages wrote is copied now (head, results) or later (staging), or written over in the next tick.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glCopyNamedBufferSubData(stages.tables(), device_->results.name(), tables.head.offset, 0, kHeadBytes);
-    glCopyNamedBufferSubData(stages.results().name(), device_->results.name(), 0, kHeadBytes, resultBytes(tick));
+    glCopyNamedBufferSubData(stages.results().name(), device_->results.name(), 0, kHeadBytes, tileBytes(tick));
+    if (const std::int64_t bytes = craterBytes(tick); bytes > 0)
+      glCopyNamedBufferSubData(stages.tables(), device_->results.name(), tables.craters.range.offset,
+                               kHeadBytes + tileBytes(tick), bytes);
     device_->finished.place();
     return glStatus("copying results");
   }
 
-  static std::int64_t resultBytes(const Submitted& tick) {
+  // What comes back besides the head: results of tiles, then those of craters.
+  static std::int64_t tileBytes(const Submitted& tick) {
     return std::int64_t(tick.active.tiles.size() * sizeof(rules::TileResult));
   }
+  static std::int64_t craterBytes(const Submitted& tick) {
+    return std::int64_t(tick.tables.craters.tiles.size() * sizeof(rules::CraterTile));
+  }
+  static std::int64_t resultBytes(const Submitted& tick) { return tileBytes(tick) + craterBytes(tick); }
 
   /// Waits for a tick's head and its tiles' results, and sends the changed cells on their way.
   Status fetchResults(Submitted& tick) {
@@ -257,9 +305,12 @@ class GlBackend final : public Backend {
     // Only pair exchange never lifts a cell above all others.
     highest_ =
         tick.plan.parameters.slopes == SlopeRule::exchange ? std::max(highest_, head_.highest) : rules::kHeightLimit;
-    if (head_.staged_cells == 0) return {};
-    if (Status status = readback().reserve(stagedBytes()); !status) return status;
-    glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, stagedBytes());
+    const std::int64_t staged = bytesOf(head_.staged_cells), cratered = bytesOf(tick.tables.craters.cells);
+    if (staged + cratered == 0) return {};
+    if (Status status = readback().reserve(staged + cratered); !status) return status;
+    if (staged > 0) glCopyNamedBufferSubData(device_->stages.staging().name(), readback().name(), 0, 0, staged);
+    if (cratered > 0)
+      glCopyNamedBufferSubData(device_->stages.craterChanges().name(), readback().name(), 0, staged, cratered);
     device_->copied[next_readback_].place();
     return glStatus("copying changed cells");
   }
@@ -269,16 +320,13 @@ class GlBackend final : public Backend {
     const std::size_t count = tick.active.tiles.size();
     const std::vector<Tile*> tiles = tick.active.tiles;
     std::vector<TileOutcome> outcomes(count);
-    std::vector<std::int64_t> first_of_tile(count);
-    std::vector<char> compacts_in_tile(count);
+    std::vector<Uncollected::Place> places(count);
+    commitCratered(tick, places, state);
     for (std::size_t i = 0; i < count; ++i) {
-      rules::TileResult result;
-      std::memcpy(&result,
-                  device_->results.data() + kHeadBytes + std::size_t(tick.tables.tile_index[i]) * sizeof(result),
-                  sizeof(result));
+      const auto result = resultOf(tick, i);
       outcomes[i] = outcomeOf(result, *tiles[i], compactsIn(tick.plan));
-      first_of_tile[i] = result.first_staged;
-      compacts_in_tile[i] = char(result.compacts);
+      places[i].first = result.first_staged;
+      places[i].compacts = result.compacts != 0;
     }
     std::vector<TileChange>& changes = tick.effect.changes;
     changes = commitTick(tick.plan, std::move(tick.active), std::move(outcomes), state);
@@ -286,21 +334,55 @@ class GlBackend final : public Backend {
     std::size_t tile = 0;
     for (const TileChange& change : changes) {
       while (tiles[tile]->at != change.at) ++tile;
-      left.first_of_change.push_back(first_of_tile[tile]);
-      left.compacts.push_back(compacts_in_tile[tile]);
+      left.places.push_back(places[tile]);
     }
-    left.cells = head_.staged_cells;
+    left.cells = head_.staged_cells + tick.tables.craters.cells;
     left.readback = next_readback_;
     next_readback_ = 1 - next_readback_;
-    fillIn(tick.plan, std::int64_t(count), tick.effect);
+    fillIn(tick, std::int64_t(count), tick.effect);
+  }
+
+  rules::TileResult resultOf(const Submitted& tick, std::size_t i) const {
+    rules::TileResult result;
+    std::memcpy(&result, device_->results.data() + kHeadBytes + std::size_t(tick.tables.tile_index[i]) * sizeof(result),
+                sizeof(result));
+    return result;
+  }
+
+  /// Stage craters: the sums of tiles that new ones changed, and where the differences of their cells are.
+  void commitCratered(const Submitted& tick, std::vector<Uncollected::Place>& places, WorldState& state) const {
+    const CraterTables& craters = tick.tables.craters;
+    for (std::size_t i = 0; i < craters.tiles.size(); ++i) {
+      rules::CraterTile tile;
+      std::memcpy(&tile, device_->results.data() + kHeadBytes + tileBytes(tick) + std::int64_t(i * sizeof(tile)),
+                  sizeof(tile));
+      const auto active = std::size_t(craters.active[i]);
+      Uncollected::Place& place = places[active];
+      place.cratered = tick.active.cratered[active];
+      place.first_cratered = head_.staged_cells + tile.first_change;
+      const std::int64_t cells = std::int64_t(tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+      const auto gained = std::int64_t(joined(tile.gained)) - (cells << 31);
+      // The hash of the tick's end: commitTick keeps it where no later stage changed the tile, and sets it elsewhere.
+      Tile& live = *tick.active.tiles[active];
+      commitCraters(live, gained, hashOf(resultOf(tick, active), live, compactsIn(tick.plan)), state);
+    }
   }
 
   ReadbackBuffer& readback() { return device_->changed_cells[next_readback_]; }
-  std::int64_t stagedBytes() const { return head_.staged_cells * std::int64_t(sizeof(std::int32_t)); }
+  static std::int64_t bytesOf(std::int64_t cells) { return cells * std::int64_t(sizeof(std::int32_t)); }
 
   static bool compactsIn(const TickPlan& plan) { return plan.parameters.compression_q16 > 0; }
 
+  static std::uint64_t joined(const rules::uint (&halves)[2]) { return halves[0] + (std::uint64_t(halves[1]) << 16); }
+
   /// @param tile  with its compacted soil as of the tick before
+  static std::uint64_t hashOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
+    const std::uint64_t hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
+    // What was compacted in earlier ticks is on the device only where this one compacts.
+    return compacts ? hash : hash + planeHash(tile.at, Plane::compacted, tile.compacted());
+  }
+
+  /// @param tile  as above
   static TileOutcome outcomeOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
     TileOutcome outcome;
     if (result.x1 == 0) return outcome;
@@ -308,19 +390,16 @@ class GlBackend final : public Backend {
     outcome.change.y = std::uint8_t(result.y0);
     outcome.change.width = std::uint8_t(result.x1 - result.x0);
     outcome.change.height = std::uint8_t(result.y1 - result.y0);
-    const auto joined = [](const rules::uint(&halves)[2]) { return halves[0] + (std::uint64_t(halves[1]) << 16); };
-    outcome.hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
-    outcome.compacted = std::int64_t(joined(result.compacted));
-    if (!compacts) {  // what was compacted in earlier ticks is not on the device
-      outcome.hash += planeHash(tile.at, Plane::compacted, tile.compacted());
-      outcome.compacted = tile.compacted_sum;
-    }
+    outcome.hash = hashOf(result, tile, compacts);
+    outcome.compacted = compacts ? std::int64_t(joined(result.compacted)) : tile.compacted_sum;
     outcome.ground = std::int64_t(joined(result.height)) - (std::int64_t(rules::kTileCells) << 30);
     return outcome;
   }
 
   /// The effect's figures.
-  void fillIn(const TickPlan& plan, std::int64_t tile_count, TickEffect& effect) const {
+  void fillIn(const Submitted& tick, std::int64_t tile_count, TickEffect& effect) const {
+    const TickPlan& plan = tick.plan;
+    const std::int64_t crater_cells = tick.tables.craters.cells;
     effect.active_cells = tile_count * rules::kTileCells;
     effect.penetrating_cells = head_.penetrating_cells;
     if (head_.penetrating_cells == 0) effect.bytes_moved = 0;  // else what whole domains were read and written for
@@ -336,7 +415,9 @@ class GlBackend final : public Backend {
                           effect.domain_cells * (kCoverBytes + kPenetrationBytes) +
                           effect.penetrating_cells * (kNearestBytes + kDisplaceBytes);
     if (compactsIn(plan)) effect.bytes_moved += effect.active_cells * kCompactionBytes;
-    effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + stagedBytes();
+    effect.bytes_moved += crater_cells * kCraterBytes;
+    effect.bytes_from_device = kHeadBytes + tile_count * std::int64_t(sizeof(rules::TileResult)) + craterBytes(tick) +
+                               bytesOf(head_.staged_cells + crater_cells);
   }
 
   static constexpr std::int64_t kHeadBytes = sizeof(rules::TickHead);
@@ -348,6 +429,7 @@ class GlBackend final : public Backend {
   ThreadPool pool_;
   std::unique_ptr<Device> device_;
   const ScenePack* loaded_ = nullptr;  // whose meshes are on the device
+  bool knows_craters_ = false;         // is what the device holds of craters from this state?
   MeshTable meshes_;
   std::int32_t highest_ = -rules::kHeightLimit;  // of all cells in all ticks
   rules::TickHead head_{};                       // of the last tick, as the stages left it

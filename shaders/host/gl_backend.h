@@ -20,8 +20,8 @@ struct GlOptions {
   std::function<void(const std::string&)> say = {};  // what should be known: the renderer, a full pool
 };
 
-/// The backend `gl`: stages 4 to 9 in compute shaders. Live tiles stay on the device; what comes back is a result of 56
-/// bytes for each active tile and the changed cells.
+/// The backend `gl`: stages 2 and 4 to 9 in compute shaders. Live tiles stay on the device, and craters, from the first
+/// on that changes one; what comes back is a result of 56 bytes for each active tile and the changed cells.
 /// Errors: no context, a limit that is too low, a shader that does not compile (with file and line).
 Result<std::unique_ptr<Backend>> makeGlBackend(const GlOptions& options = {});
 

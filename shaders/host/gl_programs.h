@@ -39,6 +39,8 @@ class GlPrograms {
 
   /// Throws std::runtime_error where a shader does not compile or link.
   const TickPrograms& choose(const Parameters& parameters);
+  /// The one of stage craters, which no parameter chooses. Throws as above.
+  const GlProgram& craters() { return *get("crater_ground"); }
 
  private:
   const GlProgram* get(const std::string& name, ShaderDefines defines = {}, int groups = 1);

@@ -53,9 +53,13 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       room_("the domains' room", limits.storage_block_bytes),
       amounts_("the active tiles' amounts", limits.storage_block_bytes),
       results_("the tiles' results", limits.storage_block_bytes),
-      staging_("the changed cells", limits.storage_block_bytes) {}
+      staging_("the changed cells", limits.storage_block_bytes),
+      crater_changes_("what craters change", limits.storage_block_bytes),
+      crater_sums_("the sums of craters", limits.storage_block_bytes) {}
 
-Status GlStages::load(const MeshTable& meshes) {
+Status GlStages::load(const MeshTable& meshes, bool with_craters) {
+  if (with_craters)
+    if (auto program = craterProgram(); !program) return Error{program.error()};
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
     if (Status status = to.reserve(std::int64_t(table.size()) * kCellBytes); !status) return status;
     if (!table.empty()) glNamedBufferSubData(to.name(), 0, std::int64_t(table.size()) * kCellBytes, table.data());
@@ -237,6 +241,7 @@ std::vector<BufferBytes> GlStages::buffers() const {
           {"requests and grants, in domains", bytes(requested_low_, requested_high_, granted_)},
           {"iterative displacement, in domains", bytes(carried_[0], carried_[1], offered_, room_)},
           {"results and changed cells", bytes(results_, staging_)},
+          {"what craters change", bytes(crater_changes_, crater_sums_)},
           {"meshes, bodies and tables", bytes(upload_, vertices_, indices_, points_, large_)}};
 }
 

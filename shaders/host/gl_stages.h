@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "shaders/host/gl_buffer.h"
+#include "shaders/host/gl_crater_table.h"
 #include "shaders/host/gl_limits.h"
 #include "shaders/host/gl_programs.h"
 #include "shaders/host/tick_tables.h"
@@ -11,21 +12,28 @@
 
 namespace spoor {
 
-/// Stages 4 to 9 of a tick as compute shaders over all active tiles at once. The context must be current in every call,
-/// the constructor's and destructor's too. Calls only queue work: see GlFence.
+/// Stages 2 and 4 to 9 of a tick as compute shaders over all active tiles at once. The context must be current in every
+/// call, the constructor's and destructor's too. Calls only queue work: see GlFence.
 class GlStages {
  public:
   /// Throws std::runtime_error where a shader of the default methods does not compile or link.
   GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled);
 
-  /// Copies a pack's meshes to the device. Errors: too large for it.
-  [[nodiscard]] Status load(const MeshTable& meshes);
+  /// Copies a pack's meshes to the device, and compiles stage craters where there may be any, as no tick should wait
+  /// for that. Errors: too large for the device; it does not compile.
+  [[nodiscard]] Status load(const MeshTable& meshes, bool with_craters = false);
 
   /// Makes room for a tick and copies its tables to the device. Errors: the device has not the memory; a shader of the
   /// tick's methods does not compile.
   [[nodiscard]] Status begin(const TickTables& tick);
 
   // The tick's stages, in order; those with `i` for every sub-step.
+  /// Of tiles in the pool; only where the tick's tables have such.
+  /// @param craters  those of this tick too, from `first_new` on; the table holds them
+  /// @param cell_q   side of a cell
+  /// Errors: as begin().
+  [[nodiscard]] Status craters(const TickTables& tick, const TilePool& pool, const CraterSet& craters,
+                               std::size_t first_new, const GlCraterTable& table, std::int32_t cell_q);
   void gather(const TickTables& tick, const TilePool& pool);
   /// @param i  kStood: where the bodies stood before the tick, before the first sub-step
   void depth(const TickTables& tick, int i);
@@ -46,6 +54,7 @@ class GlStages {
   GLuint tables() const { return upload_.name(); }
   const GrowingBuffer& results() const { return results_; }
   const GrowingBuffer& staging() const { return staging_; }
+  const GrowingBuffer& craterChanges() const { return crater_changes_; }
   // Planes, for looking into the stages. Tiles' planes are indexed by TickTables::tile_index, domains' by
   // DomainEntry::first_cell.
   const GrowingBuffer& height() const { return height_[current_]; }
@@ -56,6 +65,7 @@ class GlStages {
   const GrowingBuffer& compacted() const { return compacted_; }
 
  private:
+  Result<const GlProgram*> craterProgram();
   Status reserve(const TickTables& tick);
   static void setUniform(int location, int value) { glUniform1i(location, value); }
   static std::int64_t listOffset(const TickTables& tick, int list, std::size_t member);
@@ -89,7 +99,7 @@ class GlStages {
   GrowingBuffer overlap_, free_mask_, nearest_row_, target_, row_chunks_, receivers_;
   GrowingBuffer requested_low_, requested_high_, granted_;
   GrowingBuffer flood_, carried_[2], offered_, room_, amounts_;
-  GrowingBuffer results_, staging_;
+  GrowingBuffer results_, staging_, crater_changes_, crater_sums_;
 };
 
 }  // namespace spoor

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "shaders/rules/crater.h"
 #include "shaders/rules/exchange.h"
 #include "shared/base/assert.h"
 
@@ -15,7 +16,7 @@ constexpr int kSize = rules::kTileSize;
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
 static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::RoundLists) == 64);
-static_assert(sizeof(rules::TickHead) == 56);
+static_assert(sizeof(rules::TickHead) == 56 && sizeof(rules::CraterTile) == 40);
 
 /// Collects tables as bytes.
 class TableWriter {
@@ -63,9 +64,10 @@ class TableMaker {
         writer_(tables_.bytes),
         count_(int(plan.active.size())) {}
 
-  TickTables make(std::span<const int> slots) {
+  TickTables make(std::span<const int> slots, std::span<const CellBox> cratered) {
     for (int i = 0; i < count_; ++i) tables_.tile_index.push_back(shape_.reversed ? count_ - 1 - i : i);
     putTiles(slots);
+    putCraters(slots, cratered);
     const std::int64_t tiles = count_;
     tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 4 / rules::kGatherQuads / shape_.group), shape_);
     tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
@@ -108,6 +110,22 @@ class TableMaker {
       for (int bit = 0; bit < 9; ++bit) entry.neighbour[bit] = indexOf({at.x + bit % 3 - 1, at.y + bit / 3 - 1});
     }
     tables_.tiles = writer_.put(entries_);
+  }
+
+  void putCraters(std::span<const int> slots, std::span<const CellBox> cratered) {
+    CraterTables& craters = tables_.craters;
+    for (std::size_t i = 0; i < cratered.size(); ++i) {
+      const CellBox& box = cratered[i];
+      if (box.empty()) continue;
+      const TileCoordinate at = plan_.active[i];
+      craters.tiles.push_back(
+          {slots[i], at.x * kSize, at.y * kSize, box.x0, box.y0, box.x1, box.y1, int(craters.cells), {}});
+      craters.active.push_back(int(i));
+      craters.cells += std::int64_t(box.x1 - box.x0) * (box.y1 - box.y0);
+    }
+    craters.range = writer_.put(craters.tiles);
+    const int groups_per_tile = rules::kTileCells / rules::kCraterLaneCells / shape_.group;
+    craters.groups = writer_.dispatch(std::int64_t(craters.tiles.size()) * groups_per_tile, shape_);
   }
 
   SubStepTables subStepTables(const SubStep& sub_step, int first_sweep) {
@@ -292,8 +310,12 @@ MeshTable makeMeshTable(const ScenePack& pack) {
 }
 
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
-                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape) {
-  TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots);
+                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape,
+                          std::span<const CellBox> cratered) {
+  TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots, cratered);
+  // No crater lifts a cell by more: rim, depth and noise as large as both.
+  constexpr std::int32_t kRaiseMost = 3 * rules::kCraterHeightLimit;
+  if (!tables.craters.tiles.empty()) highest = std::min(highest + kRaiseMost, rules::kHeightLimit);
   tables.beneath = highest + plan.parameters.obstacle_threshold_q >= rules::kNoUnderside;
   for (const SubStepTables& step : tables.sub_steps) tables.beneath |= step.cover.count > 0;
   return tables;

@@ -52,6 +52,15 @@ struct SubStepTables {
   int sweep_count = 0;
 };
 
+/// Tiles that new craters change, in the plan's order.
+struct CraterTables {
+  TableRange range;  // CraterTile, which the shaders write sums into
+  GroupList groups;
+  std::vector<rules::CraterTile> tiles;
+  std::vector<int> active;  // [tiles] index in the plan
+  std::int64_t cells = 0;   // of all boxes
+};
+
 /// Everything that the shaders need to know of a tick, in one piece of bytes.
 struct TickTables {
   std::vector<std::uint8_t> bytes;
@@ -59,6 +68,7 @@ struct TickTables {
   TableRange head;  // TickHead and RoundLists
   TableRange row_flags;
   TableRange tiles;  // TileEntry [active tiles]
+  CraterTables craters;
   GroupList gather, exchange, sweep, slope, hash;
   SubStepTables stood;  // where bodies stood before the tick: for depth only
   std::vector<SubStepTables> sub_steps;
@@ -66,9 +76,11 @@ struct TickTables {
   std::vector<int> tile_index;  // [plan.active] where the shaders have that tile
 };
 
-/// @param slots    [plan.active] of the tiles in the pool
-/// @param highest  no cell of the active tiles is higher before the tick
+/// @param slots     [plan.active] of the tiles in the pool
+/// @param highest   no cell of the active tiles is higher before the tick
+/// @param cratered  [plan.active] what new craters meet (ActiveTiles); empty: they change no tile
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
-                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape);
+                          std::span<const int> slots, std::int32_t highest, const GroupShape& shape,
+                          std::span<const CellBox> cratered = {});
 
 }  // namespace spoor

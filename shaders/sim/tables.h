@@ -44,16 +44,22 @@ RULE_CONST kBindRoom = 15;         // iterative: int [domain cells]: what a cell
 RULE_CONST kBindNextHeight = 6;    // relax: int [active tiles * kTileCells]: heights after a sweep
 RULE_CONST kBindAmounts = 9;       // relax: the same: what a cell gives each neighbour that it gives to
 RULE_CONST kBindSpareHeight = 10;  // relax: the same: heights after the next sweep
-RULE_CONST kBindPoolHeight = 9;    // gather, hash: int [slots * kTileCells]: heights before this tick
-RULE_CONST kBindPoolBedrock = 10;  // gather: the same
-RULE_CONST kBindResults = 11;      // hash: TileResult [active tiles]
-RULE_CONST kBindStaging = 12;      // hash: int: differences of all changed tiles' boxes, one after the other
+RULE_CONST kBindCraterTiles = 2;   // craters: CraterTile [tiles that new ones change]
+RULE_CONST kBindCraterChanges = 3;   // craters: int: differences of these tiles' boxes, one after the other
+RULE_CONST kBindCraterSums = 4;      // craters: CraterSum [2 * the same cells]: without and with new craters
+RULE_CONST kBindCraterTable = 11;    // craters: the first of kCraterTableBuffers, up to 15
+RULE_CONST kBindPoolHeight = 9;      // craters, gather, hash: int [slots * kTileCells]: heights before this tick
+RULE_CONST kBindPoolBedrock = 10;    // craters, gather: the same
+RULE_CONST kBindResults = 11;        // hash: TileResult [active tiles]
+RULE_CONST kBindStaging = 12;        // hash: int: differences of all changed tiles' boxes, one after the other
 RULE_CONST kBindPoolCompacted = 13;  // gather, hash: as heights
 RULE_CONST kBindCompacted = 14;  // gather, penetration, hash: int [active tiles * kTileCells], where the tick compacts
 
-RULE_CONST kGatherQuads = 4;    // cells of a tile, in fours, that a lane gathers
-RULE_CONST kBlocksPerSide = 2;  // of a tile, in a fused sweep
-RULE_CONST kSlabRows = 8;       // what relax skips where nothing has changed
+RULE_CONST kCraterLaneCells = 4;         // cells of a tile that a lane of craters takes
+RULE_CONST kCraterEntriesAtOnce = 4096;  // of a bucket, in one dispatch: a lane's loops must end (llvmpipe: 65 535)
+RULE_CONST kGatherQuads = 4;             // cells of a tile, in fours, that a lane gathers
+RULE_CONST kBlocksPerSide = 2;           // of a tile, in a fused sweep
+RULE_CONST kSlabRows = 8;                // what relax skips where nothing has changed
 RULE_CONST kSlabs = kTileSize / kSlabRows;
 RULE_CONST kSlabCells = kSlabRows * kTileSize;
 RULE_CONST kMaskRows = 32;             // rows of a free mask's word, and of a block of a domain
@@ -107,6 +113,19 @@ struct TileEntry {
   int inside_columns;  // how much of it lies in the world
   int inside_rows;
   int neighbour[9];  // active tile at (dy + 1) * 3 + (dx + 1), or -1; 4 is the tile itself
+};
+
+/// A tile that was live before the tick and that new craters change.
+struct CraterTile {
+  int slot;     // in the pool
+  int tile_x0;  // its first cell
+  int tile_y0;
+  int x0;  // the box of cells in it that they meet; it lies in the world
+  int y0;
+  int x1;
+  int y1;
+  int first_change;  // in kBindCraterChanges: the box's cells, row-major
+  uint gained[2];    // written by the GPU: sums of the low and high 16 bits of the box's differences + 2^31
 };
 
 /// What the tick knows of an active tile's slabs.
