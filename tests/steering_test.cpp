@@ -207,7 +207,7 @@ class ConsoleOnPipe : public ::testing::Test {
   std::vector<std::string> answerTo(const std::vector<std::string>& pieces) {
     std::vector<std::string> said;
     std::promise<void> ended;
-    const Console console(pipe_[0], queue_, [&](const std::string& line) {
+    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) {
       said.push_back(line);
       if (line == "console: the input has ended") ended.set_value();
     });
@@ -219,6 +219,7 @@ class ConsoleOnPipe : public ::testing::Test {
 
   int pipe_[2] = {-1, -1};
   ChangeQueue queue_;
+  CraterQueue craters_;
 };
 
 TEST_F(ConsoleOnPipe, LinesBecomeChangesHoweverTheyArrive) {
@@ -252,7 +253,7 @@ TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
 TEST_F(ConsoleOnPipe, EndsWhileItsInputStaysOpen) {
   std::vector<std::string> said;
   {
-    const Console console(pipe_[0], queue_, [&](const std::string& line) { said.push_back(line); });
+    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) { said.push_back(line); });
   }
   EXPECT_TRUE(said.empty());
 }
