@@ -92,7 +92,6 @@ struct Builder {
                                          crater.depth_q, crater.noise_seed, crater.noise_q16, message.wish.balanced));
   }
   void operator()(const CraterReply& message) {
-    SPOOR_ASSERT(message.accepted == (message.tick > 0));
     out.Finish(wire::CreateCraterReply(out, message.sequence, message.accepted, message.tick, message.id,
                                        out.CreateString(printableText(message.reason, kReasonLimit))));
   }

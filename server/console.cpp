@@ -57,7 +57,8 @@ void Console::onLine(const std::string& line, bool too_long) {
   if (too_long) return say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
   if (line.find_first_not_of(" \t\r") == std::string::npos) return;
   constexpr std::string_view kCraterWord = "crater ";
-  if (line.starts_with(kCraterWord)) return onCrater(std::string_view(line).substr(kCraterWord.size()));
+  const std::string_view text = std::string_view(line).substr(line.find_first_not_of(" \t\r"));
+  if (text.starts_with(kCraterWord)) return onCrater(text.substr(kCraterWord.size()));
   auto values = parseAssignments(line);
   if (!values) return say_("console: " + values.error() + "; nothing changes");
   if (!queue_.push({0, std::move(*values)}))

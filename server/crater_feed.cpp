@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace spoor {
@@ -30,6 +32,8 @@ CraterBatch CraterFeed::take(std::int32_t tick) {
   if (console_ != nullptr)
     for (const CraterWish& wish : console_->tryTake()) addTyped(batch, tick, wish);
   if (host_ != nullptr) batch.orders = host_->tryTakeCraters();
+  std::ranges::sort(batch.orders, {},
+                    [](const CraterOrder& order) { return std::tuple(order.client, order.sequence); });
   return batch;
 }
 

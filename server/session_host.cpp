@@ -2,12 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <mutex>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 #include "protocol/enet_transport.h"
@@ -52,9 +51,7 @@ class EnetSessionHost final : public SessionHost {
   std::vector<CraterOrder> tryTakeCraters() override {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock.owns_lock()) return {};
-    std::vector<CraterOrder> orders = std::exchange(orders_, {});
-    std::ranges::sort(orders, {}, [](const CraterOrder& order) { return std::tuple(order.client, order.sequence); });
-    return orders;
+    return std::exchange(orders_, {});
   }
 
   void answer(std::vector<CraterAnswer> answers) override {

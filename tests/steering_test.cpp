@@ -236,6 +236,19 @@ TEST_F(ConsoleOnPipe, LinesBecomeChangesHoweverTheyArrive) {
   EXPECT_EQ(changes[2].values[0].value, 2) << "the last line needs no end";
 }
 
+TEST_F(ConsoleOnPipe, CratersAreQueuedAndBadOnesSaid) {
+  const auto said =
+      answerTo({"crater 1,2,0.5,1,0.3\n", "  crater 1,2,0.5\ncrater\nroughness=0.5\ncrater 3,2,0.5,1,0.3,0.1,0.2"});
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_EQ(said[0], "console: crater: '1,2,0.5' is not X,Y,R1,R2,D5[,H4|balanced][,NOISE]; there is none");
+  EXPECT_EQ(said[1], "console: 'crater' is not NAME=VALUE; nothing changes");
+  const auto craters = craters_.tryTake();
+  ASSERT_EQ(craters.size(), 2u);
+  EXPECT_TRUE(craters[0].balanced);
+  EXPECT_EQ(craters[1].crater.rim_height_q, 1000);
+  EXPECT_EQ(queue_.tryTake().size(), 1u);
+}
+
 TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
   const auto said =
       answerTo({"hello\nroughness=7\nterrainSize=3\n" + std::string(1, '\0') + "\n",

@@ -115,7 +115,7 @@ void readCarpet(TableReader& table, const ScenePack& pack, CraterGroup& group) {
     group.width_q = toUnits(size[0]);
     group.height_q = toUnits(size[1]);
   }
-  group.apart_ticks_q16 = ticksQ16(table.number("over_s", kTimeRange, 0), pack) / group.count;
+  group.apart_ticks_q16 = ticksQ16(table.number("over_s", kTimeRange, 0), pack) / std::max(group.count, 1);
 }
 
 CraterGroup readGroup(TableReader& table, std::size_t index, const ScenePack& pack, std::vector<std::string>& notes) {
