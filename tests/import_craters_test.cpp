@@ -309,7 +309,7 @@ TEST_F(ImportCraters, ExampleScenesHaveThem) {
   const struct {
     const char* name;
     std::size_t count;
-  } scenes[] = {{"craters", 131}, {"crater_looks", 5}, {"crater_field", 10000}};
+  } scenes[] = {{"craters", 132}, {"crater_looks", 5}, {"crater_field", 10000}};
   for (const auto& [name, count] : scenes) {
     const auto scene = importScene(std::string(SPOOR_SCENES_DIR) + "/" + name + ".toml");
     ASSERT_TRUE(scene) << scene.error();
