@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/base/assert.h"
+
 namespace spoor {
 namespace {
 
@@ -17,7 +19,8 @@ std::string seconds(std::int64_t time_ms) {
 }
 
 std::size_t sizeOf(const TickUpdate& update) {
-  return sizeof(TickUpdate) + update.poses.size() * sizeof(Pose) + update.tiles.size();
+  return sizeof(TickUpdate) + update.poses.size() * sizeof(Pose) + update.tiles.size() +
+         update.craters.size() * sizeof(Crater);
 }
 
 }  // namespace
@@ -71,6 +74,9 @@ Status Follower::onMessage(const Message& message) {
       return onGoodbye(std::get<Goodbye>(message));
     case MessageKind::refused:
       return onRefused(std::get<Refused>(message));
+    case MessageKind::crater_reply:
+      return onCraterReply(std::get<CraterReply>(message));
+    case MessageKind::crater_request:
     case MessageKind::tick_update:
     case MessageKind::hello:
     case MessageKind::pack_request:
@@ -207,6 +213,19 @@ Status Follower::onRefused(const Refused& refused) const {
                  std::to_string(kProtocolVersion)};
   }
   return Error{"server " + options_.server_name + " let this client go: " + refused.reason};
+}
+
+Status Follower::onCraterReply(const CraterReply& reply) {
+  if (asked_.erase(reply.sequence) == 0) return unexpected(reply);
+  outcomes_.push_back({reply.sequence, reply.tick, reply.id, reply.reason});
+  return {};
+}
+
+std::uint32_t Follower::requestCrater(const CraterWish& wish) {
+  SPOOR_ASSERT(inSync());
+  asked_.insert(++last_request_);
+  send(CraterRequest{last_request_, wish});
+  return last_request_;
 }
 
 /// The connection stands no longer: an end in order only where the last tick has been confirmed.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/session.h"
@@ -40,6 +41,8 @@ class Follower {
   const WorldState& state() const { return *state_; }
   int mismatchCount() const { return mismatch_count_; }
   std::vector<TileCoordinate> takeChangedTiles();
+  std::uint32_t requestCrater(const CraterWish& wish);
+  std::vector<CraterOutcome> takeCraterOutcomes() { return std::exchange(outcomes_, {}); }
 
  private:
   enum class Stage : std::uint8_t { connecting, greeting, fetching_pack, fetching_snapshot, following };
@@ -52,6 +55,7 @@ class Follower {
   Status onSnapshot(std::span<const std::uint8_t> bytes);
   Status onTick(TickUpdate update);
   Status onGoodbye(const Goodbye& goodbye);
+  Status onCraterReply(const CraterReply& reply);
   Status onRefused(const Refused& refused) const;
   Status onDisconnected(CloseCode code);
   Status checkTime(std::int64_t now_ms) const;
@@ -82,6 +86,9 @@ class Follower {
   std::size_t waiting_bytes_ = 0;
   std::set<TileCoordinate> changed_;
   int mismatch_count_ = 0;
+  std::uint32_t last_request_ = 0;
+  std::set<std::uint32_t> asked_;  // requests without an outcome
+  std::vector<CraterOutcome> outcomes_;
   std::optional<std::int32_t> final_tick_;
   bool is_ended_ = false;
 };

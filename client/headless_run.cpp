@@ -21,12 +21,14 @@ Status makeFolder(const std::string& folder) {
   return {};
 }
 
-Status follow(ClientSession& session, Recording& recording) {
+Status follow(ClientSession& session, CraterAsker asker, Recording& recording) {
   while (!session.ended()) {
     if (const Status served = session.update(kUpdateWait_ms); !served) return served;
+    asker.update(session);
     if (session.inSync()) recording.add(session.state(), session.takeChangedTiles());
   }
   if (!session.inSync()) return Error{"session: it ended before its state had arrived"};
+  asker.finish();
   recording.finish(session.state());
   return {};
 }
@@ -44,7 +46,7 @@ Status drawAndWrite(Renderer& renderer, const TerrainView& view, const Camera& c
 Status runHeadless(ClientSession& session, const HeadlessOptions& options) {
   if (const Status made = makeFolder(options.folder); !made) return made;
   Recording recording(options.frame_count);
-  if (const Status followed = follow(session, recording); !followed) return followed;
+  if (const Status followed = follow(session, CraterAsker(options.craters), recording); !followed) return followed;
 
   const TerrainView view{&session.base(), &session.state()};
   const auto fileOf = [&](const std::string& name) { return (std::filesystem::path(options.folder) / name).string(); };

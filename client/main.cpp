@@ -26,6 +26,7 @@ struct Arguments {
   std::string folder = ".";
   std::string name = "viewer";
   std::string shade = "lit";
+  std::vector<std::string> craters;
   PictureArguments picture;
 };
 
@@ -58,8 +59,19 @@ Result<RenderSettings> renderSettings(const Arguments& arguments) {
   return settings;
 }
 
+Result<std::vector<TimedCrater>> craterWishes(const Arguments& arguments) {
+  std::vector<TimedCrater> craters;
+  for (const std::string& text : arguments.craters) {
+    const auto crater = parseTimedCrater(text);
+    if (!crater) return Error{fmt::format("--crater \"{}\": {}", text, crater.error())};
+    craters.push_back(*crater);
+  }
+  return craters;
+}
+
 /// Follows the session in the way asked for.
-Status follow(const Arguments& arguments, const ConnectOptions& connect, const RenderSettings& settings) {
+Status follow(const Arguments& arguments, const ConnectOptions& connect, const RenderSettings& settings,
+              const std::vector<TimedCrater>& craters) {
   // The context first: whoever cannot draw should not join.
   std::unique_ptr<GlContext> headless;
   std::unique_ptr<WindowContext> window;
@@ -79,8 +91,8 @@ Status follow(const Arguments& arguments, const ConnectOptions& connect, const R
   auto session = ClientSession::start(connect);
   if (!session) return Error{session.error()};
   const Status done = arguments.headless
-                          ? runHeadless(**session, {int(arguments.frame_count), arguments.folder, settings})
-                          : runInWindow(**session, *window, settings);
+                          ? runHeadless(**session, {int(arguments.frame_count), arguments.folder, settings, craters})
+                          : runInWindow(**session, *window, settings, CraterAsker(craters));
   if ((*session)->inSync()) {
     const WorldState& state = (*session)->state();
     fmt::print("tick {}\nmismatches {}\nhash {}\n", state.tick, (*session)->mismatchCount(), hexText(stateHash(state)));
@@ -100,15 +112,19 @@ int run(int argc, char** argv) {
   addPictureOptions(options, arguments.picture);
   options.add("shade", "lit|normals|columns", "columns: cells round the focus as bars, coloured by height",
               &arguments.shade);
+  options.add("crater", "T:X,Y,R1,R2,D5,...", "ask for one at tick T, metres; then H4 or balanced, then noise, 0 .. 1",
+              &arguments.craters);
   options.parseOrExit(argc, argv);
 
   const auto connect = connectOptions(arguments);
   const auto settings = renderSettings(arguments);
-  if (!connect || !settings) {
-    fmt::print(stderr, "spoor-client: {}\n", connect ? settings.error() : connect.error());
+  const auto craters = craterWishes(arguments);
+  if (!connect || !settings || !craters) {
+    fmt::print(stderr, "spoor-client: {}\n",
+               !connect ? connect.error() : (!settings ? settings.error() : craters.error()));
     return 2;
   }
-  if (const Status done = follow(arguments, *connect, *settings); !done) {
+  if (const Status done = follow(arguments, *connect, *settings, *craters); !done) {
     fmt::print(stderr, "spoor-client: {}\n", done.error());
     return 1;
   }

@@ -27,6 +27,8 @@ class EnetSession final : public ClientSession {
   const WorldState& state() const override { return follower_.state(); }
   int mismatchCount() const override { return follower_.mismatchCount(); }
   std::vector<TileCoordinate> takeChangedTiles() override { return follower_.takeChangedTiles(); }
+  std::uint32_t requestCrater(const CraterWish& wish) override { return follower_.requestCrater(wish); }
+  std::vector<CraterOutcome> takeCraterOutcomes() override { return follower_.takeCraterOutcomes(); }
 
  private:
   std::unique_ptr<Transport> transport_;

@@ -7,6 +7,7 @@
 
 #include "shared/base/result.h"
 #include "shared/codec/tile_codec.h"
+#include "shared/world/crater_text.h"
 
 namespace spoor {
 
@@ -15,6 +16,14 @@ struct ConnectOptions {
   std::uint16_t port = 0;
   std::string name = "viewer";
   double timeout_s = 10.0;  // until the server answers, and of silence afterwards
+};
+
+/// What became of a crater that was asked for.
+struct CraterOutcome {
+  std::uint32_t sequence = 0;
+  std::int32_t tick = 0;  // with which it came; 0: refused
+  std::uint32_t id = 0;   // of its record
+  std::string reason;     // why refused; printable
 };
 
 /// A client's side of a session: it joins, fetches the pack and a snapshot, follows the ticks, checks every tile and
@@ -43,6 +52,12 @@ class ClientSession {
   /// Tiles changed since the last call, each once. After a snapshot: every live tile, and those that were live before
   /// it (after a mismatch one of these may be dormant again).
   virtual std::vector<TileCoordinate> takeChangedTiles() = 0;
+
+  /// Asks the server for a crater; only where inSync(). Returns the number of the request, from 1 on. Whatever the
+  /// server does not admit it refuses, with a reason; a request on which the session ends may stay without an outcome.
+  virtual std::uint32_t requestCrater(const CraterWish& wish) = 0;
+  /// Outcomes since the last call. The crater itself comes with its tick, like everybody's.
+  virtual std::vector<CraterOutcome> takeCraterOutcomes() = 0;
 };
 
 }  // namespace spoor

@@ -11,6 +11,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include "client/ground_ahead.h"
 #include "client/views.h"
 
 namespace spoor {
@@ -105,14 +106,45 @@ class Steering {
   Press follow_key_{GLFW_KEY_F}, next_key_{GLFW_KEY_TAB};
 };
 
+/// A crater of the shape that explosions leave, as large as the scene lets clients ask for.
+CraterWish largestWish(const CraterLimits& limits, const glm::dvec2& place_m, std::uint32_t number) {
+  CraterWish wish;
+  wish.balanced = true;
+  Crater& crater = wish.crater;
+  crater.x_q = std::int32_t(std::lround(place_m.x * rules::kUnitsPerMetre));
+  crater.y_q = std::int32_t(std::lround(place_m.y * rules::kUnitsPerMetre));
+  crater.crest_radius_q = std::max(1, std::int32_t(limits.request_radius_q / 1.4));
+  crater.inner_radius_q = 2 * crater.crest_radius_q - limits.request_radius_q;
+  crater.inner_radius_q = std::clamp(crater.inner_radius_q, 0, crater.crest_radius_q);
+  crater.depth_q = std::min(limits.request_height_q, crater.crest_radius_q * 2 / 5);
+  crater.noise_seed = std::uint16_t(number * 40503u);
+  crater.noise_q16 = 16384;
+  return wish;
+}
+
+void askForCrater(ClientSession& session, const Camera& camera, std::uint32_t number) {
+  const CraterLimits& limits = session.pack().crater_limits;
+  const auto place_m = groundAhead({&session.base(), &session.state()}, camera);
+  if (limits.request_radius_q == 0)
+    fmt::print("clients may not ask for craters in this scene\n");
+  else if (!place_m)
+    fmt::print("no crater: the middle of the view does not meet the ground\n");
+  else
+    session.requestCrater(largestWish(limits, *place_m, number));
+  std::fflush(stdout);
+}
+
 }  // namespace
 
-Status runInWindow(ClientSession& session, const WindowContext& context, const RenderSettings& settings) {
+Status runInWindow(ClientSession& session, const WindowContext& context, const RenderSettings& settings,
+                   CraterAsker asker) {
   GLFWwindow* window = context.window();
   std::optional<Renderer> renderer;
   Steering steering(settings.sun_azimuth_deg);
   double last_s = glfwGetTime();
   bool told_end = false;
+  Press crater_key(GLFW_KEY_B);
+  std::uint32_t crater_number = 0;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && glfwGetKey(window, GLFW_KEY_ESCAPE) != GLFW_PRESS) {
     if (session.ended()) {
       glfwWaitEventsTimeout(kIdleFrame_s);  // nothing moves any more but the camera
@@ -121,7 +153,9 @@ Status runInWindow(ClientSession& session, const WindowContext& context, const R
     }
     if (!session.ended())
       if (const Status served = session.update(session.inSync() ? 1 : 20); !served) return served;
+    asker.update(session);
     if (session.ended() && !told_end) {
+      asker.finish();
       fmt::print("session ended at tick {}\n", session.inSync() ? session.state().tick : 0);
       std::fflush(stdout);
     }
@@ -136,7 +170,9 @@ Status runInWindow(ClientSession& session, const WindowContext& context, const R
     renderer->tilesChanged(session.takeChangedTiles());
     const double now_s = glfwGetTime();
     const TerrainView view{&session.base(), &session.state()};
-    renderer->draw(view, steering.step(window, view, std::min(now_s - last_s, kLongestStep_s)));
+    const Camera camera = steering.step(window, view, std::min(now_s - last_s, kLongestStep_s));
+    if (crater_key.hit(window) && !session.ended()) askForCrater(session, camera, ++crater_number);
+    renderer->draw(view, camera);
     last_s = now_s;
     renderer->showInWindow();
     glfwSwapBuffers(window);

@@ -29,6 +29,8 @@ constexpr std::array<NamedRule, kMessageKindCount> kRules = {{
     {"confirm", {Sender::client, false, 256, 256}},
     {"goodbye", {Sender::server, false, kKiB, kKiB}},
     {"refused", {Sender::server, false, kKiB, kKiB}},
+    {"crater request", {Sender::client, false, 256, 256}},
+    {"crater reply", {Sender::server, false, kKiB, kKiB}},
 }};
 
 std::string overLimit(MessageKind kind, const char* what, std::size_t size, std::size_t limit) {

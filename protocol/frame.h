@@ -20,8 +20,10 @@ enum class MessageKind : std::uint8_t {
   confirm = 6,
   goodbye = 7,
   refused = 8,
+  crater_request = 9,
+  crater_reply = 10,
 };
-inline constexpr std::uint8_t kMessageKindCount = 9;
+inline constexpr std::uint8_t kMessageKindCount = 11;
 const char* toText(MessageKind kind);
 
 enum class Sender : std::uint8_t { client, server };

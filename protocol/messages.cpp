@@ -21,7 +21,8 @@ static_assert(kHoldsAt<MessageKind::hello, Hello> && kHoldsAt<MessageKind::welco
               kHoldsAt<MessageKind::snapshot_request, SnapshotRequest> &&
               kHoldsAt<MessageKind::bulk_chunk, BulkChunk> && kHoldsAt<MessageKind::tick_update, TickUpdate> &&
               kHoldsAt<MessageKind::confirm, Confirm> && kHoldsAt<MessageKind::goodbye, Goodbye> &&
-              kHoldsAt<MessageKind::refused, Refused>);
+              kHoldsAt<MessageKind::refused, Refused> && kHoldsAt<MessageKind::crater_request, CraterRequest> &&
+              kHoldsAt<MessageKind::crater_reply, CraterReply>);
 
 // Tables are flat: far below the verifier's own defaults of 64 and a million.
 constexpr flatbuffers::uoffset_t kDepthLimit = 8;
@@ -83,6 +84,16 @@ struct Builder {
   void operator()(const Refused& message) {
     out.Finish(wire::CreateRefused(out, message.protocol_version,
                                    out.CreateString(printableText(message.reason, kReasonLimit))));
+  }
+  void operator()(const CraterRequest& message) {
+    const Crater& crater = message.wish.crater;
+    out.Finish(wire::CreateCraterRequest(out, message.sequence, crater.x_q, crater.y_q, crater.inner_radius_q,
+                                         crater.crest_radius_q, message.wish.balanced ? 0 : crater.rim_height_q,
+                                         crater.depth_q, crater.noise_seed, crater.noise_q16, message.wish.balanced));
+  }
+  void operator()(const CraterReply& message) {
+    out.Finish(wire::CreateCraterReply(out, message.sequence, message.accepted, message.tick, message.id,
+                                       out.CreateString(printableText(message.reason, kReasonLimit))));
   }
 };
 
@@ -179,6 +190,33 @@ Result<Message> convert(const wire::Refused& table) {
   return Message(Refused{table.protocol_version(), std::string(reason)});
 }
 
+/// Any values: what a scene does not admit is refused with a reply.
+Result<Message> convert(const wire::CraterRequest& table) {
+  if (table.balanced() && table.rim_height_q() != 0)
+    return invalid(MessageKind::crater_request, "a rim height beside balanced");
+  CraterRequest request{table.sequence(), {}};
+  request.wish.balanced = table.balanced();
+  Crater& crater = request.wish.crater;
+  crater.x_q = table.x_q();
+  crater.y_q = table.y_q();
+  crater.inner_radius_q = table.inner_radius_q();
+  crater.crest_radius_q = table.crest_radius_q();
+  crater.rim_height_q = table.rim_height_q();
+  crater.depth_q = table.depth_q();
+  crater.noise_seed = table.noise_seed();
+  crater.noise_q16 = table.noise_q16();
+  return Message(request);
+}
+
+Result<Message> convert(const wire::CraterReply& table) {
+  constexpr auto kind = MessageKind::crater_reply;
+  const auto reason = textOf(*table.reason());
+  if (reason.size() > kReasonLimit || !isPrintable(reason)) return invalid(kind, "unprintable reason");
+  if (table.tick() < 0 || table.accepted() != (table.tick() > 0)) return invalid(kind, "a tick that does not fit");
+  if (!table.accepted() && table.id() != 0) return invalid(kind, "refused, and an id");
+  return Message(CraterReply{table.sequence(), table.accepted(), table.tick(), table.id(), std::string(reason)});
+}
+
 template <typename Table>
 Result<Message> verifyAndConvert(const Frame& frame) {
   flatbuffers::Verifier verifier(frame.payload.data(), frame.payload.size(), kDepthLimit, kTablesLimit);
@@ -218,6 +256,10 @@ Result<Message> decodeMessage(std::span<const std::uint8_t> bytes, Sender from) 
       return verifyAndConvert<wire::Goodbye>(*frame);
     case MessageKind::refused:
       return verifyAndConvert<wire::Refused>(*frame);
+    case MessageKind::crater_request:
+      return verifyAndConvert<wire::CraterRequest>(*frame);
+    case MessageKind::crater_reply:
+      return verifyAndConvert<wire::CraterReply>(*frame);
   }
   return Error{"frame: unknown kind"};
 }

@@ -10,6 +10,7 @@
 #include "protocol/frame.h"
 #include "shared/base/result.h"
 #include "shared/codec/tile_codec.h"
+#include "shared/world/crater_text.h"
 
 namespace spoor {
 
@@ -94,9 +95,26 @@ struct Refused {
   bool operator==(const Refused&) const = default;
 };
 
+/// Client: let there be a crater. Its values are any: what cannot be is answered with a refusal.
+struct CraterRequest {
+  std::uint32_t sequence = 0;  // above that of the client's request before
+  CraterWish wish;             // tick and id do not travel; nor does H4 where it is balanced
+  bool operator==(const CraterRequest&) const = default;
+};
+
+/// Server: what became of a request; one for each, in any order.
+struct CraterReply {
+  std::uint32_t sequence = 0;
+  bool accepted = false;
+  std::int32_t tick = 0;  // with which it came, >= 1; 0 where refused
+  std::uint32_t id = 0;   // of its record; 0 where refused
+  std::string reason;     // why refused; empty where accepted
+  bool operator==(const CraterReply&) const = default;
+};
+
 /// One alternative a MessageKind, in its order. Server to client also: TickUpdate (shared/codec/tile_codec.h).
-using Message =
-    std::variant<Hello, Welcome, PackRequest, SnapshotRequest, BulkChunk, TickUpdate, Confirm, Goodbye, Refused>;
+using Message = std::variant<Hello, Welcome, PackRequest, SnapshotRequest, BulkChunk, TickUpdate, Confirm, Goodbye,
+                             Refused, CraterRequest, CraterReply>;
 
 inline MessageKind kindOf(const Message& message) { return MessageKind(message.index()); }
 

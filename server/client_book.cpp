@@ -15,6 +15,7 @@ constexpr std::size_t kTicksOutstandingLimitBytes = std::size_t(16) << 20;  // u
 constexpr std::size_t kSnapshotsLimit = 16;                                 // asked for by one client within ...
 constexpr std::int64_t kSnapshotsPeriod_ms = 60000;
 constexpr std::size_t kReportsKept = 1024;
+constexpr const char* kOverReason = "crater: the session is over";
 
 }  // namespace
 
@@ -90,11 +91,14 @@ void ClientBook::onMessage(PeerId peer, Client& client, std::span<const std::uin
       return onSnapshotRequest(peer, client, std::get<SnapshotRequest>(*message), now_ms);
     case MessageKind::confirm:
       return onConfirm(peer, client, std::get<Confirm>(*message));
+    case MessageKind::crater_request:
+      return onCraterRequest(peer, client, std::get<CraterRequest>(*message), now_ms);
     case MessageKind::welcome:
     case MessageKind::bulk_chunk:
     case MessageKind::tick_update:
     case MessageKind::goodbye:
     case MessageKind::refused:
+    case MessageKind::crater_reply:
       break;  // decodeMessage does not let a client send these
   }
 }
@@ -184,6 +188,42 @@ void ClientBook::onConfirm(PeerId peer, Client& client, const Confirm& confirm) 
   if (is_over_ && report.in_sync && confirm.tick == mirror_.tick()) release(peer, CloseCode::done, {});
 }
 
+void ClientBook::onCraterRequest(PeerId peer, Client& client, const CraterRequest& request, std::int64_t now_ms) {
+  ++reports_.at(client.report_number).craters_asked;
+  if (!client.craters.count(pack_.crater_limits, now_ms))
+    return release(peer, CloseCode::refused,
+                   "asks for more than " + std::to_string(pack_.crater_limits.requests_per_minute) + " + " +
+                       std::to_string(CraterRequests::kExcessLimit) + " craters a minute");
+  if (client.stage != Stage::following)
+    return refuseCrater(peer, client, request.sequence, "crater: this client does not follow the session yet");
+  if (is_over_) return refuseCrater(peer, client, request.sequence, kOverReason);
+  const auto crater = client.craters.admit(pack_, mirror_.poses(), request, now_ms);
+  if (!crater) return refuseCrater(peer, client, request.sequence, crater.error());
+  orders_.push_back({client.report_number, request.sequence, *crater});
+}
+
+void ClientBook::refuseCrater(PeerId peer, Client& client, std::uint32_t sequence, const std::string& reason) {
+  ++reports_.at(client.report_number).craters_refused;
+  send(peer, Channel::control, CraterReply{sequence, false, 0, 0, reason});
+}
+
+void ClientBook::answer(std::span<const CraterAnswer> answers) {
+  std::map<std::uint64_t, PeerId> peers;
+  if (!answers.empty())
+    for (const auto& [peer, client] : clients_)
+      if (client.stage != Stage::greeting) peers[client.report_number] = peer;
+  for (const CraterAnswer& answer : answers) {
+    const auto found = peers.find(answer.client);
+    if (found == peers.end()) continue;
+    Client& client = clients_.at(found->second);
+    client.craters.close(answer.sequence);
+    if (answer.tick == 0)
+      refuseCrater(found->second, client, answer.sequence, answer.reason);
+    else
+      send(found->second, Channel::control, CraterReply{answer.sequence, true, answer.tick, answer.id, ""});
+  }
+}
+
 void ClientBook::checkTime(std::int64_t now_ms) {
   std::vector<PeerId> late, silent;
   for (const auto& [peer, client] : clients_) {
@@ -253,12 +293,15 @@ void ClientBook::trimReports() {
 
 void ClientBook::sayGoodbye(const std::string& reason) {
   is_over_ = true;
+  orders_.clear();
   std::vector<PeerId> unknown, finished;
   for (auto& [peer, client] : clients_) {
     if (client.stage == Stage::greeting) {
       unknown.push_back(peer);
       continue;
     }
+    for (const std::uint32_t sequence : client.craters.pending()) refuseCrater(peer, client, sequence, kOverReason);
+    client.craters = {};
     send(peer, Channel::control, Goodbye{reason, mirror_.tick()});
     const ClientReport& report = reports_.at(client.report_number);
     if (report.in_sync && report.confirmed_tick == mirror_.tick()) finished.push_back(peer);

@@ -5,11 +5,13 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/bulk.h"
 #include "protocol/messages.h"
 #include "protocol/transport.h"
+#include "server/crater_requests.h"
 #include "server/session_host.h"
 #include "server/world_mirror.h"
 
@@ -36,7 +38,14 @@ class ClientBook {
   /// Moves bytes, waiting up to `wait_ms` for some, answers what came in and lets go of who is late.
   void serve(std::int64_t now_ms, int wait_ms);
 
-  /// Tells everyone that the session ends with the last published tick. Nobody may join from here on.
+  /// The craters that clients asked for and may have, since the last call, in the order of arrival. Each is to be
+  /// answered; one whose client has left since is carried out as well.
+  std::vector<CraterOrder> takeCraters() { return std::exchange(orders_, {}); }
+  /// Tells clients what became of their orders; those that have left miss it.
+  void answer(std::span<const CraterAnswer> answers);
+
+  /// Tells everyone that the session ends with the last published tick. Nobody may join from here on, and craters that
+  /// have not come are refused.
   void sayGoodbye(const std::string& reason);
   /// True when nobody is left who has yet to confirm the last tick; after sayGoodbye().
   bool allDone() const { return clients_.empty(); }
@@ -59,6 +68,7 @@ class ClientBook {
     std::uint64_t sent_bytes = 0;           // of `sending`
     std::int32_t lowest_confirmation = 0;   // ticks below were confirmed, or came before the snapshot
     std::deque<std::int64_t> snapshots_ms;  // when it asked for one, the last minute
+    CraterRequests craters;
   };
   using Clients = std::map<PeerId, Client>;  // in order of connecting
 
@@ -68,6 +78,8 @@ class ClientBook {
   void onPackRequest(PeerId peer, Client& client);
   void onSnapshotRequest(PeerId peer, Client& client, const SnapshotRequest& request, std::int64_t now_ms);
   void onConfirm(PeerId peer, Client& client, const Confirm& confirm);
+  void onCraterRequest(PeerId peer, Client& client, const CraterRequest& request, std::int64_t now_ms);
+  void refuseCrater(PeerId peer, Client& client, std::uint32_t sequence, const std::string& reason);
 
   void checkTime(std::int64_t now_ms);
   void pumpBulk(PeerId peer, Client& client);
@@ -83,6 +95,7 @@ class ClientBook {
   WorldMirror mirror_;
   BulkPackage pack_package_;
   Clients clients_;
+  std::vector<CraterOrder> orders_;
   std::set<PeerId> closing_;
   std::map<std::uint64_t, ClientReport> reports_;  // in order of joining
   std::uint64_t next_report_ = 0;

@@ -8,8 +8,8 @@
 
 namespace spoor {
 
-Console::Console(int input, ChangeQueue& queue, std::function<void(const std::string&)> say)
-    : input_(input), queue_(queue), say_(std::move(say)) {
+Console::Console(int input, ChangeQueue& queue, CraterQueue& craters, std::function<void(const std::string&)> say)
+    : input_(input), queue_(queue), craters_(craters), say_(std::move(say)) {
   if (::pipe(stop_) != 0) throw std::runtime_error("the console cannot open a pipe");
   thread_ = std::thread([this] { serve(); });
 }
@@ -56,10 +56,20 @@ void Console::serve() {
 void Console::onLine(const std::string& line, bool too_long) {
   if (too_long) return say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
   if (line.find_first_not_of(" \t\r") == std::string::npos) return;
+  constexpr std::string_view kCraterWord = "crater ";
+  const std::string_view text = std::string_view(line).substr(line.find_first_not_of(" \t\r"));
+  if (text.starts_with(kCraterWord)) return onCrater(text.substr(kCraterWord.size()));
   auto values = parseAssignments(line);
   if (!values) return say_("console: " + values.error() + "; nothing changes");
   if (!queue_.push({0, std::move(*values)}))
     say_("console: " + std::to_string(ChangeQueue::kLimit) + " changes wait for a tick already; nothing changes");
+}
+
+void Console::onCrater(std::string_view text) {
+  const auto wish = parseCrater(text);
+  if (!wish) return say_("console: crater: " + wish.error() + "; there is none");
+  if (!craters_.push(*wish))
+    say_("console: " + std::to_string(CraterQueue::kLimit) + " craters wait for a tick already; there is none");
 }
 
 }  // namespace spoor

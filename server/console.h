@@ -4,21 +4,23 @@
 #include <string>
 #include <thread>
 
+#include "server/crater_feed.h"
 #include "server/parameter_changes.h"
 
 namespace spoor {
 
-/// Reads lines "NAME=VALUE[,NAME=VALUE...]" from a file descriptor on a thread of its own, for as long as it lives or
-/// until the input ends (which it says), and queues them as changes. Safe on untrusted input: a bad line is said and
-/// changes nothing.
+/// Reads lines "NAME=VALUE[,NAME=VALUE...]" and "crater X,Y,R1,R2,D5[,H4|balanced][,NOISE]" from a file descriptor on a
+/// thread of its own, for as long as it lives or until the input ends (which it says), and queues them. Safe on
+/// untrusted input: a bad line is said and changes nothing.
 class Console {
  public:
   static constexpr std::size_t kLineLimit = 4096;  // bytes; a longer line is a bad one
 
-  /// @param input  stays open, and the caller's; 0 is standard input
-  /// @param queue  outlives this
-  /// @param say    called from the console's thread
-  Console(int input, ChangeQueue& queue, std::function<void(const std::string&)> say);
+  /// @param input    stays open, and the caller's; 0 is standard input
+  /// @param queue    outlives this
+  /// @param craters  outlives this
+  /// @param say      called from the console's thread
+  Console(int input, ChangeQueue& queue, CraterQueue& craters, std::function<void(const std::string&)> say);
   ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
@@ -26,10 +28,12 @@ class Console {
  private:
   void serve();
   void onLine(const std::string& line, bool too_long);
+  void onCrater(std::string_view text);
 
   int input_;
   int stop_[2];  // a pipe: what is written to the second end wakes the thread, to leave
   ChangeQueue& queue_;
+  CraterQueue& craters_;
   std::function<void(const std::string&)> say_;
   std::thread thread_;
 };

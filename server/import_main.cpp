@@ -48,6 +48,9 @@ void report(const LoadedScene& scene, const std::string& out) {
               pack.meshes.size(), pack.paths.size(), pack.bodies.size(), pack.default_ticks, pack.ticks_per_second);
   std::printf("world  %d x %d cells of %g m: %.1f x %.1f m\n", pack.width_cells, pack.height_cells, pack.cell_q / 1e4,
               pack.width_cells * (pack.cell_q / 1e4), pack.height_cells * (pack.cell_q / 1e4));
+  if (pack.crater_limits.radius_q > 0)
+    std::printf("craters %zu timed, the largest allowed has R3 %g m\n", pack.craters.size(),
+                pack.crater_limits.radius_q / 1e4);
   std::printf("pack   %s: %zu bytes, id %s\n", out.c_str(), scene.encoded.size(), toText(scene.id).c_str());
 }
 

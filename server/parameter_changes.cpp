@@ -34,17 +34,4 @@ Result<ParameterChange> parseChange(std::string_view text) {
   return change;
 }
 
-bool ChangeQueue::push(ParameterChange change) {
-  const std::lock_guard lock(mutex_);
-  if (changes_.size() >= kLimit) return false;
-  changes_.push_back(std::move(change));
-  return true;
-}
-
-std::vector<ParameterChange> ChangeQueue::tryTake() {
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return {};
-  return std::exchange(changes_, {});
-}
-
 }  // namespace spoor

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "server/named_parameters.h"
+#include "server/waiting_queue.h"
 
 namespace spoor {
 
@@ -23,19 +23,7 @@ Result<std::vector<NamedValue>> parseAssignments(std::string_view text);
 /// Reads "TICK:NAME=VALUE[,NAME=VALUE...]". Safe on untrusted text.
 Result<ParameterChange> parseChange(std::string_view text);
 
-/// Changes on their way from a thread that makes them to the tick loop, which never waits for it.
-class ChangeQueue {
- public:
-  static constexpr std::size_t kLimit = 1024;
-
-  /// False: there are kLimit already.
-  [[nodiscard]] bool push(ParameterChange change);
-  /// Takes what has come, or nothing where push() is at work this very moment: then it comes with the next tick.
-  std::vector<ParameterChange> tryTake();
-
- private:
-  std::mutex mutex_;
-  std::vector<ParameterChange> changes_;
-};
+/// Changes on their way from a thread that makes them to the tick loop.
+using ChangeQueue = WaitingQueue<ParameterChange>;
 
 }  // namespace spoor

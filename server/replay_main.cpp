@@ -1,4 +1,5 @@
 // spoor-replay: what a session file holds, and whether this machine gets the same.
+#include <algorithm>
 #include <cstdio>
 #include <deque>
 #include <exception>
@@ -9,6 +10,7 @@
 #include "shared/base/options.h"
 #include "shared/codec/session.h"
 #include "shared/sim/simulation.h"
+#include "shared/world/crater_text.h"
 
 namespace spoor {
 namespace {
@@ -24,6 +26,14 @@ void printInfo(const SessionReader& reader) {
               toText(reader.id()).c_str(), pack.width_cells, pack.height_cells, pack.cell_q / 1e4, pack.bodies.size());
 }
 
+constexpr std::size_t kCratersListed = 20;
+
+void printCraters(std::span<const Crater> craters) {
+  for (const Crater& crater : craters.first(std::min(craters.size(), kCratersListed)))
+    std::printf("tick %d: crater %u at %s\n", crater.tick, crater.id, describeCrater(crater).c_str());
+  if (craters.size() > kCratersListed) std::printf("and %zu craters more\n", craters.size() - kCratersListed);
+}
+
 int info(SessionReader& reader) {
   printInfo(reader);
   const std::int32_t cell_q = reader.pack().cell_q;
@@ -31,15 +41,20 @@ int info(SessionReader& reader) {
   std::printf("parameters at the start\n");
   for (const std::string& line : describeParameters(parameters, cell_q)) std::printf("  %s\n", line.c_str());
   TickRecord last;
+  std::vector<Crater> craters;
   for (;;) {
     auto record = reader.next();
     if (!record) return fail(record.error());
     if (!*record) break;
     last = std::move(**record);
+    craters.insert(craters.end(), last.craters.begin(), last.craters.end());
     if (!last.parameters) continue;
     std::printf("tick %d: %s\n", last.tick, describeChange(parameters, *last.parameters, cell_q).c_str());
     parameters = *last.parameters;
   }
+  printCraters(craters);
+  std::printf("craters %zu, ledger's crater budget %lld\n", craters.size(),
+              static_cast<long long>(last.ledger.craters));
   std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick,
               reader.truncated() ? " (the file ends within the next)" : "", hexText(last.state_hash).c_str(),
               static_cast<long long>(last.ledger.error()));
@@ -48,16 +63,16 @@ int info(SessionReader& reader) {
 
 /// One line for each tick, as comma-separated values.
 int exportTicks(SessionReader& reader) {
-  std::printf("tick,state_hash,initial,ground,compacted,craters,events\n");
+  std::printf("tick,state_hash,initial,ground,compacted,craters,events,new_craters\n");
   for (;;) {
     auto record = reader.next();
     if (!record) return fail(record.error());
     if (!*record) return 0;
     const TickRecord& tick = **record;
-    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld\n", tick.tick, hexText(tick.state_hash).c_str(),
+    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld,%zu\n", tick.tick, hexText(tick.state_hash).c_str(),
                 static_cast<long long>(tick.ledger.initial), static_cast<long long>(tick.ledger.ground),
                 static_cast<long long>(tick.ledger.compacted), static_cast<long long>(tick.ledger.craters),
-                static_cast<long long>(tick.ledger.events));
+                static_cast<long long>(tick.ledger.events), tick.craters.size());
   }
 }
 

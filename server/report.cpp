@@ -75,6 +75,14 @@ std::string tableOf(const SessionReport& report) {
   row("ledger", fmt::format("initial {} = ground {} + compacted {} - craters {} - events {}; error {}",
                             report.ledger.initial, report.ledger.ground, report.ledger.compacted, report.ledger.craters,
                             report.ledger.events, report.ledger.error()));
+  std::int64_t asked = 0, refused = 0;
+  for (const ClientReport& client : report.clients) {
+    asked += client.craters_asked;
+    refused += client.craters_refused;
+  }
+  if (figures.craters > 0 || figures.craters_refused > 0 || asked > 0)
+    row("craters", fmt::format("{}; {} left out; clients asked for {}, {} refused", figures.craters,
+                               figures.craters_refused, asked, refused));
   if (figures.too_fast_ticks > 0)
     row("too fast", fmt::format("in {} ticks a body outran its sub-steps", figures.too_fast_ticks));
   if (figures.kept_back > 0)
@@ -121,6 +129,8 @@ JsonWriter jsonOf(const SessionReport& report) {
   json.value("error", report.ledger.error());
   json.end();
   json.value("kept_back", report.figures.kept_back);
+  json.value("crater_count", report.figures.craters);
+  json.value("craters_left_out", report.figures.craters_refused);
   json.hash("server_hash", report.server_hash);
   json.beginArray("client_hashes");
   for (const ClientReport& client : report.clients) {
@@ -130,6 +140,8 @@ JsonWriter jsonOf(const SessionReport& report) {
     json.value("tick", std::int64_t(client.confirmed_tick));
     json.value("equal", endedEqual(report, client));
     json.value("bytes_per_tick", bytesPerTick(client));
+    json.value("craters_asked", std::int64_t(client.craters_asked));
+    json.value("craters_refused", std::int64_t(client.craters_refused));
     json.value("left_because", client.left_because);
     json.end();
   }

@@ -25,6 +25,8 @@ struct Settings {
   bool list_devices = false, console = false;
   std::vector<std::string> set;
   std::vector<ParameterChange> changes;  // of `set`
+  std::vector<std::string> crater;
+  std::vector<TimedCrater> craters;  // of `crater`
   std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
   double rate_hz = -1, wait_s = 60;
 };
@@ -47,7 +49,10 @@ void parse(int argc, char** argv, Settings& settings) {
   options.add("wait", "S", "how long to wait for them", &settings.wait_s, 0.0, 86400.0);
   options.add("json", "FILE", "also write the table's figures there", &settings.json);
   options.add("set", "T:NAME=VALUE,...", "from tick T on; names as in a scene's [thesis]", &settings.set);
-  options.addFlag("console", "read lines NAME=VALUE,... from standard input, for the next tick", &settings.console);
+  options.add("crater", "T:X,Y,R1,R2,D5,...", "at tick T, metres; then H4 or balanced, then noise, 0 .. 1",
+              &settings.crater);
+  options.addFlag("console", "read lines NAME=VALUE,... or crater X,Y,R1,R2,D5,... for the next tick",
+                  &settings.console);
   options.parseOrExit(argc, argv);
   for (const std::string& text : settings.set) {
     auto change = parseChange(text);
@@ -56,6 +61,14 @@ void parse(int argc, char** argv, Settings& settings) {
       std::exit(2);
     }
     settings.changes.push_back(std::move(*change));
+  }
+  for (const std::string& text : settings.crater) {
+    const auto crater = parseTimedCrater(text);
+    if (!crater) {
+      std::fprintf(stderr, "spoor-server: --crater '%s': %s (see --help)\n", text.c_str(), crater.error().c_str());
+      std::exit(2);
+    }
+    settings.craters.push_back(*crater);
   }
 }
 
@@ -97,6 +110,12 @@ void checkChanges(const ScenePack& pack, std::vector<ParameterChange> changes) {
   }
 }
 
+void checkCraters(const ScenePack& pack, const std::vector<TimedCrater>& craters) {
+  for (const TimedCrater& crater : craters)
+    if (const auto resolved = resolveCrater(pack, crater.wish); !resolved)
+      throw std::runtime_error(fmt::format("--crater, tick {}: {}", crater.tick, resolved.error()));
+}
+
 void awaitClients(const SessionHost& host, const Settings& settings) {
   if (settings.wait_clients == 0) return;
   spdlog::info("waiting for {} clients", settings.wait_clients);
@@ -120,6 +139,7 @@ int run(int argc, char** argv) {
   LoadedScene scene = loadSeeded(settings);
   for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
   checkChanges(scene.pack, settings.changes);
+  checkCraters(scene.pack, settings.craters);
   const BaseTerrain base(scene.pack);
   const auto say = [](const std::string& line) { spdlog::info(line); };
   Simulation simulation(base, scene.id,
@@ -143,11 +163,17 @@ int run(int argc, char** argv) {
   for (const ParameterChange& change : loop.changes)
     if (change.tick > loop.ticks)
       spdlog::warn("--set, tick {}: the session ends with tick {}", change.tick, loop.ticks);
+  loop.craters = settings.craters;
+  for (const TimedCrater& crater : loop.craters)
+    if (crater.tick > loop.ticks)
+      spdlog::warn("--crater, tick {}: the session ends with tick {}", crater.tick, loop.ticks);
   ChangeQueue typed;
+  CraterQueue typed_craters;
   std::optional<Console> console;
   if (settings.console) {
     loop.console = &typed;
-    console.emplace(STDIN_FILENO, typed, say);
+    loop.console_craters = &typed_craters;
+    console.emplace(STDIN_FILENO, typed, typed_craters, say);
   }
   SessionReport report;
   report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), say);

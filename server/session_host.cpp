@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -47,6 +48,18 @@ class EnetSessionHost final : public SessionHost {
     queue_.push_back(std::move(update));
   }
 
+  std::vector<CraterOrder> tryTakeCraters() override {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock.owns_lock()) return {};
+    return std::exchange(orders_, {});
+  }
+
+  void answer(std::vector<CraterAnswer> answers) override {
+    if (answers.empty()) return;
+    const std::lock_guard lock(mutex_);
+    answers_.insert(answers_.end(), std::make_move_iterator(answers.begin()), std::make_move_iterator(answers.end()));
+  }
+
   int clientsInSync() const override { return clients_in_sync_; }
 
   std::vector<ClientReport> finish(double timeout_s) override {
@@ -64,6 +77,8 @@ class EnetSessionHost final : public SessionHost {
   void run();
   /// True once the session is to end with what has been published so far.
   bool publishQueued();
+  /// Hands over what the clients ask for.
+  void passOrders();
 
   std::unique_ptr<Transport> transport_;
   std::uint16_t port_;
@@ -73,6 +88,8 @@ class EnetSessionHost final : public SessionHost {
 
   std::mutex mutex_;
   std::vector<TickUpdate> queue_;
+  std::vector<CraterAnswer> answers_;  // of ticks in the queue, or before
+  std::vector<CraterOrder> orders_;
   bool is_finishing_ = false;
   std::int64_t finish_timeout_ms_ = 0;
 
@@ -81,10 +98,12 @@ class EnetSessionHost final : public SessionHost {
 
 bool EnetSessionHost::publishQueued() {
   std::vector<TickUpdate> updates;
+  std::vector<CraterAnswer> answers;
   bool is_finishing;
   {
     const std::lock_guard lock(mutex_);
     updates.swap(queue_);
+    answers.swap(answers_);
     is_finishing = is_finishing_;
   }
   if (updates.size() > kQueueWarning && !std::exchange(has_warned_, true)) {
@@ -93,13 +112,23 @@ bool EnetSessionHost::publishQueued() {
   for (TickUpdate& update : updates) {
     book_.publish(std::move(update));
     book_.serve(nowMs(), 0);  // a session that runs ahead must not keep the network waiting
+    passOrders();
   }
+  book_.answer(answers);
   return is_finishing;
+}
+
+void EnetSessionHost::passOrders() {
+  const std::vector<CraterOrder> orders = book_.takeCraters();
+  if (orders.empty()) return;
+  const std::lock_guard lock(mutex_);
+  orders_.insert(orders_.end(), orders.begin(), orders.end());
 }
 
 void EnetSessionHost::run() {
   while (!publishQueued()) {
     book_.serve(nowMs(), kServeWait_ms);
+    passOrders();
     clients_in_sync_ = book_.clientsInSync();
   }
   book_.sayGoodbye("the session is over");

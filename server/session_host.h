@@ -15,6 +15,22 @@ struct HostOptions {
   int max_clients = 16;
 };
 
+/// A crater that a client asked for and may have, on its way to a tick.
+struct CraterOrder {
+  std::uint64_t client = 0;  // the how manieth to join
+  std::uint32_t sequence = 0;
+  Crater crater;
+};
+
+/// What became of an order.
+struct CraterAnswer {
+  std::uint64_t client = 0;
+  std::uint32_t sequence = 0;
+  std::int32_t tick = 0;  // with which it came; 0: it did not
+  std::uint32_t id = 0;
+  std::string reason = {};  // why not
+};
+
 /// What is known of a client, present or gone.
 struct ClientReport {
   std::string name;
@@ -25,7 +41,9 @@ struct ClientReport {
   std::int32_t ticks_sent = 0;
   std::uint64_t tick_bytes_sent = 0;      // of tick updates, as sent (compressed, with frame headers)
   std::uint64_t snapshot_bytes_sent = 0;  // of packs and snapshots
-  std::string left_because;               // empty while connected
+  std::int32_t craters_asked = 0;
+  std::int32_t craters_refused = 0;  // of these
+  std::string left_because;          // empty while connected
 };
 
 /// Serves a session to clients on a thread of its own. That thread keeps a mirror of the state, fed by the published
@@ -41,6 +59,12 @@ class SessionHost {
 
   /// Hands a tick over; returns at once. Ticks must come in order, from 1 on.
   virtual void publish(TickUpdate update) = 0;
+
+  /// Takes the craters that clients asked for since the last call, by (client, sequence); nothing where the host's
+  /// thread is at work on them this very moment: then they come with the next call. Never waits for a client.
+  virtual std::vector<CraterOrder> tryTakeCraters() = 0;
+  /// Says what became of orders; returns at once. After the tick they came with has been published.
+  virtual void answer(std::vector<CraterAnswer> answers) = 0;
 
   /// Clients connected now whose last confirmation (of a tick, or of their snapshot) carried our hash.
   virtual int clientsInSync() const = 0;

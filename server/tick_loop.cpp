@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <thread>
 
+#include "server/tick_inputs.h"
 #include "shared/base/json.h"
-#include "shared/world/script.h"
 
 namespace spoor {
 namespace {
@@ -56,51 +55,6 @@ void note(LoopFigures& figures, const TickResult& result, std::int32_t tick, dou
   figures.kept_back += result.effect.kept_back;
 }
 
-/// What the session's parameters become, tick by tick.
-class Steering {
- public:
-  Steering(const ScenePack& pack, const Parameters& start, const LoopOptions& options,
-           const std::function<void(const std::string&)>& say)
-      : pack_(pack), parameters_(start), console_(options.console), say_(say) {
-    for (const ParameterChange& change : options.changes) changes_[change.tick].push_back(change);
-  }
-
-  /// Begins a tick, with new parameters where they change. Those with which it cannot begin are taken back.
-  Status begin(Simulation& simulation, std::int32_t tick, const std::vector<Pose>& poses) {
-    const Parameters before = parameters_;
-    if (const auto found = changes_.find(tick); found != changes_.end())
-      for (const ParameterChange& change : found->second) apply(change, tick);
-    if (console_ != nullptr)
-      for (const ParameterChange& change : console_->tryTake()) apply(change, tick);
-    if (parameters_ == before) return simulation.begin(poses);
-    const Status status = simulation.begin(poses, parameters_);
-    if (status) {
-      say_(fmt::format("tick {}: {}", tick, describeChange(before, parameters_, pack_.cell_q)));
-      return status;
-    }
-    parameters_ = before;
-    const Status without = simulation.begin(poses);
-    if (without) say_(fmt::format("tick {}: the parameters stay as they were: {}", tick, status.error()));
-    return without;
-  }
-
- private:
-  void apply(const ParameterChange& change, std::int32_t tick) {
-    std::vector<std::string> notes;
-    const auto changed = changeParameters(pack_, parameters_, change.values, notes);
-    if (!changed) return say_(fmt::format("tick {}: {}; nothing changes", tick, changed.error()));
-    for (const std::string& text : notes) say_(fmt::format("tick {}: {}", tick, text));
-    if (*changed == parameters_) say_(fmt::format("tick {}: the parameters are so already", tick));
-    parameters_ = *changed;
-  }
-
-  const ScenePack& pack_;
-  Parameters parameters_;
-  ChangeQueue* console_;
-  std::map<std::int32_t, std::vector<ParameterChange>> changes_;
-  const std::function<void(const std::string&)>& say_;
-};
-
 /// Says what a user would want to know when it happens for the first time; `figures` are those before this tick.
 void sayFirsts(const LoopFigures& figures, const TickResult& result, std::int32_t tick,
                const std::function<void(const std::string&)>& say) {
@@ -119,7 +73,7 @@ void sayFirsts(const LoopFigures& figures, const TickResult& result, std::int32_
 LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const LoopOptions& options, SessionHost* host,
                      SessionWriter* writer, const std::function<void(const std::string&)>& say) {
   const Script script(base);
-  Steering steering(base.pack(), simulation.state().parameters, options, say);
+  TickInputs inputs(base.pack(), script, simulation.state().parameters, options, host, say);
   LoopFigures figures;
   Pace pace(options.rate_hz);
   const auto start = Clock::now();
@@ -139,7 +93,7 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
         StageTimer timer(outer, Stage::commands);
         poses = script.poses(begun + 1);
       }
-      if (Status status = steering.begin(simulation, begun + 1, poses); status) {
+      if (Status status = inputs.begin(simulation, begun + 1, poses); status) {
         ++begun;
       } else {  // the pack's own script left the range, or a device failed: the session ends, what is done stays done
         failure = fmt::format("tick {}: {}", begun + 1, status.error());
@@ -160,16 +114,21 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
       writer->append(
           {tick, result->update.poses, hash, result->ledger, result->update.parameters, result->update.craters});
     if (host != nullptr) host->publish(std::move(result->update));
+    inputs.published(tick);
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
     sayFirsts(figures, *result, tick, say);
     note(figures, *result, tick, tick_ms);
     if (Clock::now() - said > std::chrono::seconds(1) || tick == last) {
       said = Clock::now();
-      say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, hash {}", tick, options.ticks,
-                      tick_ms, result->effect.active_cells, simulation.state().tiles.size(), hexText(hash)));
+      const std::size_t crater_count = simulation.state().craters.size();
+      say(fmt::format("tick {:5} of {}: {:6.2f} ms, {:7} active cells, {} live tiles, {}hash {}", tick, options.ticks,
+                      tick_ms, result->effect.active_cells, simulation.state().tiles.size(),
+                      crater_count > 0 ? fmt::format("{} craters, ", crater_count) : "", hexText(hash)));
     }
   }
   if (!failure.empty()) say(failure);
+  figures.craters = inputs.craters().count();
+  figures.craters_refused = inputs.craters().refusedCount();
   figures.wall_s = millisecondsSince(start) / 1e3;
   return figures;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/crater_feed.h"
 #include "server/parameter_changes.h"
-#include "server/session_host.h"
 #include "shared/codec/session.h"
 #include "shared/sim/simulation.h"
 
@@ -16,6 +16,8 @@ struct LoopOptions {
   double rate_hz = 60;                        // ticks per second; 0: as fast as they go
   std::vector<ParameterChange> changes = {};  // of one tick: in this order; before those of the console
   ChangeQueue* console = nullptr;             // may be nullptr
+  std::vector<TimedCrater> craters = {};      // besides the scene's
+  CraterQueue* console_craters = nullptr;     // may be nullptr
 };
 
 /// Figures of a session: of its last kTicksKept ticks, so that a long session does not grow, in no particular order.
@@ -29,12 +31,16 @@ struct LoopFigures {
   std::int32_t too_fast_ticks = 0;
   std::int32_t unbalanced_ticks = 0;  // whose ledger error was not 0
   std::int64_t kept_back = 0;         // TickEffect::kept_back of all ticks
+  std::int64_t craters = 0;           // that came
+  std::int64_t craters_refused = 0;   // that did not, although scene, console or clients brought them here
   double wall_s = 0;
 };
 
-/// Runs a session's ticks: poses from the script, parameters where they change, one step, then to the network and the
-/// session file. Waits for nothing but the clock. `host` and `writer` may be nullptr. Progress, about once a second,
-/// goes to `say`, and so does each change of parameters. One that cannot be is said and changes nothing.
+/// Runs a session's ticks: poses from the script, parameters where they change, craters, one step, then to the network
+/// and the session file. Waits for nothing but the clock. `host` and `writer` may be nullptr. Progress, about once a
+/// second, goes to `say`, and so does each change of parameters and each crater that is not the scene's. What cannot be
+/// is said and changes nothing. Of one tick, craters come in this order: the scene's, those of `options`, the
+/// console's, the clients' by (client, sequence).
 LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const LoopOptions& options, SessionHost* host,
                      SessionWriter* writer, const std::function<void(const std::string&)>& say);
 

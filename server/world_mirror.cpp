@@ -4,10 +4,12 @@ namespace spoor {
 
 WorldMirror::WorldMirror(const ScenePack& pack, const PackId& id) : base_(pack), state_(initialState(id, base_)) {
   hashes_.push_back(stateHash(state_));
+  poses_ = state_.poses;
 }
 
 Status WorldMirror::apply(const TickUpdate& update) {
   last_tick_ = update.tick;
+  poses_ = update.poses;
   hashes_.push_back(update.state_hash);
   if (hashes_.size() > kHashesKept) hashes_.pop_front();
   if (broken_) return {};  // said once

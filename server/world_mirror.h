@@ -24,6 +24,8 @@ class WorldMirror {
 
   std::int32_t tick() const { return last_tick_; }
   const PackId& packId() const { return state_.pack_id; }
+  /// Where the bodies are after tick().
+  const std::vector<Pose>& poses() const { return poses_; }
   /// The published hash of a tick; nothing for ticks to come and those more than kHashesKept back.
   std::optional<std::uint64_t> hashAt(std::int32_t tick) const;
 
@@ -42,6 +44,7 @@ class WorldMirror {
   BaseTerrain base_;
   WorldState state_;
   std::int32_t last_tick_ = 0;
+  std::vector<Pose> poses_;
   std::deque<std::uint64_t> hashes_;  // of the last ticks, newest at the back
   std::map<std::int32_t, BulkPackage> snapshots_;
   std::optional<std::string> broken_;

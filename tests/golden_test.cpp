@@ -76,7 +76,7 @@ TEST_P(GoldenOnGl, TheFirstHashesAreTheCommittedOnes) {
   Simulation simulation(base, scene.id, test::borrowBackend(backend_case));
   const std::int32_t ticks = std::min(scene.pack.default_ticks, kTicksOnGl);
   for (std::int32_t tick = 1; tick <= ticks; ++tick) {
-    const auto result = simulation.step(script.poses(tick));
+    const auto result = simulation.step(script.poses(tick), {}, script.craters(tick));
     ASSERT_TRUE(result) << result.error();
     ASSERT_EQ(result->ledger.error(), 0) << "tick " << tick;
     if (tick % kEvery == 0 || tick == scene.pack.default_ticks) {
@@ -98,7 +98,7 @@ TEST_P(Golden, HashesAreTheCommittedOnesAndTheGroundGoesToSleep) {
   std::string seen, first_difference;
   const std::int32_t ticks = scene.pack.default_ticks;
   for (std::int32_t tick = 1; tick <= ticks; ++tick) {
-    const auto result = simulation.step(script.poses(tick));
+    const auto result = simulation.step(script.poses(tick), {}, script.craters(tick));
     ASSERT_TRUE(result) << result.error();
     ASSERT_EQ(simulation.state().ledger.error(), 0) << "tick " << tick;
     EXPECT_FALSE(result->too_fast) << "tick " << tick;
@@ -139,7 +139,8 @@ TEST_P(Golden, NeitherThreadsNorKernelsNorSkippingShow) {
   for (const Kernels* set : availableKernels()) variants.push_back({2, set, true});
   for (const NativeOptions& options : variants) {
     Simulation simulation(base, scene.id, makeNativeBackend(options));
-    for (std::int32_t tick = 1; tick <= kEvery; ++tick) ASSERT_TRUE(simulation.step(script.poses(tick)));
+    for (std::int32_t tick = 1; tick <= kEvery; ++tick)
+      ASSERT_TRUE(simulation.step(script.poses(tick), {}, script.craters(tick)));
     EXPECT_EQ(hexText(stateHash(simulation.state())), scene.hashes.at(kEvery)) << simulation.backend().name();
   }
 }

@@ -94,7 +94,7 @@ TEST(Hostile, RandomMessagesNeverStopASession) {
     Player& hostile = rig.connect();
     rig.play(1);
     for (int said = 0; said < 8; ++said) {
-      switch (random() % 5) {
+      switch (random() % 6) {
         case 0:
           hostile.say(Hello{kProtocolVersion, "x"});
           break;
@@ -106,6 +106,9 @@ TEST(Hostile, RandomMessagesNeverStopASession) {
           break;
         case 3:
           hostile.say(Confirm{std::int32_t(random() % 80), random()});
+          break;
+        case 4:
+          hostile.say(CraterRequest{std::uint32_t(random()), {{.x_q = std::int32_t(random())}, random() % 2 == 0}});
           break;
         default:
           hostile.sayBytes(std::vector<std::uint8_t>(random() % 40, std::uint8_t(random())));

@@ -1,6 +1,9 @@
 #include "tests/network_rig.h"
 
 #include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "shared/base/hash.h"
 #include "shared/world/script.h"
@@ -29,10 +32,13 @@ ScriptedSession::ScriptedSession(ScenePack own_pack)
   hash_at[0] = stateHash(state);
 }
 
-TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) const {
+TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick, std::size_t first_new_crater) const {
   const Tile* held = state.tiles.find(at);
-  auto tile = makeTile(at, {&base}, tick);
-  if (held != nullptr) tile->height() = held->height();
+  auto tile = makeTile(at, {&base, &state.craters}, tick);
+  if (held != nullptr) {
+    tile->height() = held->height();
+    addCraters(at, tile->height(), *tile->bedrock, pack, state.craters, first_new_crater);
+  }
   const PlaneCells before = tile->height();
   const std::uint64_t seed = mix64(std::uint64_t(tick) << 32 | std::uint64_t(at.y) << 16 | std::uint64_t(at.x));
   // Two cells side by side share their soil out anew: nothing is lost.
@@ -59,13 +65,23 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick) con
 TickUpdate ScriptedSession::step() {
   const std::int32_t tick = state.tick + 1;
   const TileCoordinate extent = tileExtent(pack);
+  const std::size_t first_new_crater = state.craters.size();
+  std::vector<Crater> craters = std::exchange(arriving, {});
+  for (std::size_t i = 0; i < craters.size(); ++i) {
+    craters[i].tick = tick;
+    craters[i].id = std::uint32_t(first_new_crater + i);
+  }
+  state.craters.add(craters);
+  std::set<TileCoordinate> cratered;
+  for (const Tile* tile : state.tiles.meeting(pack, craters)) cratered.insert(tile->at);
   std::vector<TileChange> tiles;
   for (std::int32_t y = 0; y < extent.y; ++y) {
     for (std::int32_t x = 0; x < extent.x; ++x) {
-      if (rough_ || (x + y + tick) % 4 == 0) tiles.push_back(changeTile({x, y}, tick));
+      if (rough_ || (x + y + tick) % 4 == 0 || cratered.contains({x, y}))
+        tiles.push_back(changeTile({x, y}, tick, first_new_crater));
     }
   }
-  const Status status = applyTiles(state, base, tiles);
+  const Status status = applyTiles(state, base, tiles, first_new_crater);
   EXPECT_TRUE(status) << status.error();
   state.tick = tick;
   state.previous_poses = std::move(state.poses);
@@ -73,7 +89,7 @@ TickUpdate ScriptedSession::step() {
   std::optional<Parameters> parameters;
   if (const auto found = changes.find(tick); found != changes.end()) parameters = state.parameters = found->second;
   hash_at[tick] = stateHash(state);
-  return {tick, hash_at[tick], state.poses, encodeTiles(tiles), parameters};
+  return {tick, hash_at[tick], state.poses, encodeTiles(tiles), parameters, craters};
 }
 
 std::vector<TransportEvent> Meddler::service(int wait_ms) {
@@ -133,6 +149,7 @@ void Rig::stepPlayers() {
       const auto message = decodeMessage(event.bytes, Sender::server);
       ASSERT_TRUE(message) << message.error();
       if (const auto* refused = std::get_if<Refused>(&*message)) player->refusal = refused->reason;
+      if (const auto* reply = std::get_if<CraterReply>(&*message)) player->replies.push_back(*reply);
     }
   }
 }
@@ -155,7 +172,16 @@ void Rig::runUntil(const std::function<bool()>& done, int limit_ms) {
 
 void Rig::play(int tick_count) {
   for (int i = 0; i < tick_count; ++i) {
+    std::vector<CraterOrder> orders = book.takeCraters();
+    std::ranges::sort(orders, {}, [](const CraterOrder& order) { return std::tuple(order.client, order.sequence); });
+    std::vector<CraterAnswer> answers;
+    for (const CraterOrder& order : orders) {
+      const auto id = std::uint32_t(session.state.craters.size() + session.arriving.size());
+      answers.push_back({order.client, order.sequence, session.state.tick + 1, id});
+      session.arriving.push_back(order.crater);
+    }
     book.publish(session.step());
+    book.answer(answers);
     run(kTick_ms);
   }
 }

@@ -38,9 +38,10 @@ class ScriptedSession {
   WorldState state;
   std::map<std::int32_t, std::uint64_t> hash_at;
   std::map<std::int32_t, Parameters> changes;  // of parameters, by the first tick they are for
+  std::vector<Crater> arriving;                // that come with the next tick
 
  private:
-  TileChange changeTile(TileCoordinate at, std::int32_t tick) const;
+  TileChange changeTile(TileCoordinate at, std::int32_t tick, std::size_t first_new_crater) const;
   bool rough_ = false;
 };
 
@@ -82,6 +83,7 @@ struct Player {
   /// The reason of a refusal among what the server said, for players that talk for themselves.
   std::optional<std::string> refusal;
   bool is_disconnected = false;
+  std::vector<CraterReply> replies;  // for players that talk for themselves
 };
 
 /// A server and its clients on an in-process network, in step.
@@ -98,7 +100,7 @@ class Rig {
   void run(int time_ms);
   /// Passes time until `done`, at most `limit_ms`; fails the test where that is not enough.
   void runUntil(const std::function<bool()>& done, int limit_ms = 20000);
-  /// Publishes ticks, one every 16 ms.
+  /// Publishes ticks, one every 16 ms, with the craters that clients have asked for.
   void play(int tick_count);
   /// Says goodbye and waits until all that is left has closed.
   std::vector<ClientReport> finish();

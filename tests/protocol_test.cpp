@@ -58,6 +58,20 @@ TickUpdate steeredTick() {
   return tick;
 }
 
+/// No field has its default.
+CraterWish sampleWish() {
+  CraterWish wish;
+  wish.crater.x_q = INT32_MIN;
+  wish.crater.y_q = INT32_MAX;
+  wish.crater.inner_radius_q = -3;
+  wish.crater.crest_radius_q = 4;
+  wish.crater.rim_height_q = 5;
+  wish.crater.depth_q = 6;
+  wish.crater.noise_seed = 65535;
+  wish.crater.noise_q16 = 8;
+  return wish;
+}
+
 std::vector<Message> samples() {
   return {Hello{kProtocolVersion, "viewer 1"},
           Welcome{kProtocolVersion, {~std::uint64_t(0), 2}, 12, 3456, 60},
@@ -67,7 +81,9 @@ std::vector<Message> samples() {
           sampleTick(4000),
           Confirm{5, 0xfedcba9876543210u},
           Goodbye{"over", 600},
-          Refused{2, "no"}};
+          Refused{2, "no"},
+          CraterRequest{9, sampleWish()},
+          CraterReply{9, true, 77, 12, ""}};
 }
 
 Sender senderOf(const Message& message) { return ruleOf(kindOf(message)).from; }
@@ -79,7 +95,8 @@ bool equal(const Message& a, const Message& b) {
         const T& second = std::get<T>(b);
         if constexpr (std::is_same_v<T, TickUpdate>) {
           return first.tick == second.tick && first.state_hash == second.state_hash && first.poses == second.poses &&
-                 first.tiles == second.tiles && first.parameters == second.parameters;
+                 first.tiles == second.tiles && first.parameters == second.parameters &&
+                 first.craters == second.craters;
         } else {
           return first == second;
         }
@@ -154,6 +171,10 @@ TEST(Messages, ValuesOutOfRangeAreRejected) {
       TickUpdate{0, 0, {}, {}},
       Confirm{-1, 0},
       Goodbye{"over", -1},
+      CraterReply{1, true, 0, 0, ""},
+      CraterReply{1, false, 5, 0, "no"},
+      CraterReply{1, true, -5, 0, ""},
+      CraterReply{1, false, 0, 3, "no"},
   };
   for (const Message& message : wrong) {
     const auto frame = encodeMessage(message);
@@ -237,6 +258,46 @@ TEST(Parameters, OfAWrongSizeAreRejected) {
                 (!fits && contains(decoded.error(), "broken table")))
         << decoded.error();
   }
+}
+
+TEST(Craters, GoRoundTripInATickUpdate) {
+  TickUpdate tick = sampleTick(1);
+  for (std::uint32_t id = 0; id < 3; ++id) {
+    tick.craters.push_back(sampleWish().crater);
+    tick.craters.back().tick = 77;
+    tick.craters.back().id = id;
+  }
+  const auto frame = encodeMessage(tick);
+  ASSERT_TRUE(frame);
+  const auto decoded = decodeMessage(*frame, Sender::server);
+  ASSERT_TRUE(decoded) << decoded.error();
+  EXPECT_EQ(std::get<TickUpdate>(*decoded).craters, tick.craters);
+}
+
+TEST(Craters, ARequestMayHoldAnyValue) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 200; ++i) {
+    CraterRequest request{std::uint32_t(random()), {}};
+    Crater& crater = request.wish.crater;
+    for (std::int32_t* value : {&crater.x_q, &crater.y_q, &crater.inner_radius_q, &crater.crest_radius_q,
+                                &crater.rim_height_q, &crater.depth_q})
+      *value = i % 4 == 0 ? INT32_MIN : std::int32_t(random());
+    request.wish.balanced = i % 2 != 0;
+    if (request.wish.balanced) crater.rim_height_q = 0;
+    const auto frame = encodeMessage(request);
+    ASSERT_TRUE(frame);
+    const auto decoded = decodeMessage(*frame, Sender::client);
+    ASSERT_TRUE(decoded) << decoded.error();
+    EXPECT_EQ(std::get<CraterRequest>(*decoded), request);
+  }
+}
+
+TEST(Craters, ABalancedRimDoesNotTravel) {
+  CraterRequest request{1, sampleWish()};
+  request.wish.balanced = true;
+  const auto decoded = decodeMessage(*encodeMessage(request), Sender::client);
+  ASSERT_TRUE(decoded) << decoded.error();
+  EXPECT_EQ(std::get<CraterRequest>(*decoded).wish.crater.rim_height_q, 0);
 }
 
 TEST(Messages, TextsAreCleanedOnTheWayOut) {

@@ -168,6 +168,7 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
     for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
     payload.put(std::uint32_t(world_.pack.bodies.size()));
     for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
+    payload.put(std::uint32_t(0));  // craters
     ByteWriter block;
     putParameters(block, parameters);
     block.bytes.resize(size);
@@ -186,10 +187,51 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
   EXPECT_EQ(withParameters(good, kParametersBytes).ticks, 1);
   EXPECT_EQ(withParameters(good, 0).error, "") << "none";
   for (const std::size_t size : {std::size_t(1), kParametersBytes - 1, kParametersBytes + 1, 2 * kParametersBytes})
-    EXPECT_NE(withParameters(good, size).error.find("does not fit"), std::string::npos) << size;
+    EXPECT_NE(withParameters(good, size).error.find("is of a wrong size"), std::string::npos) << size;
   Parameters wrong = good;
   wrong.spread_cells = 65;
   EXPECT_NE(withParameters(wrong, kParametersBytes).error.find("spread_cells is 65"), std::string::npos);
+}
+
+TEST_F(Session, CratersThatCannotBeAreReported) {
+  world_.pack.crater_limits.radius_q = 20000;
+  record();
+  const Bytes whole = read();
+  const auto withCraters = [&](std::uint32_t count, const Crater& crater, std::size_t bytes) {
+    ByteWriter payload;
+    payload.put(std::int32_t(1));
+    for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
+    payload.put(std::uint32_t(world_.pack.bodies.size()));
+    for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
+    payload.put(count);
+    ByteWriter block;
+    for (std::uint32_t i = 0; i < std::min(count, 4u); ++i) putCrater(block, crater);
+    block.bytes.resize(bytes);
+    payload.putBytes(block.bytes);
+    ByteWriter file;
+    file.putBytes(std::span(whole).first(recordStarts(whole)[1]));
+    file.put(std::uint32_t(payload.bytes.size()));
+    file.put(std::uint8_t(2));
+    file.putBytes(payload.bytes);
+    file.put(hashBytes(payload.bytes, 2));
+    write(file.bytes);
+    return readAll();
+  };
+  Crater good;
+  good.x_q = good.y_q = 10000;
+  good.crest_radius_q = 5000;
+  good.tick = 1;
+  EXPECT_EQ(withCraters(2, good, 2 * kCraterBytes).error, "");
+  EXPECT_EQ(withCraters(2, good, 2 * kCraterBytes).ticks, 1);
+  for (const std::size_t size : {std::size_t(0), kCraterBytes, 2 * kCraterBytes - 1, 2 * kCraterBytes + 1})
+    EXPECT_NE(withCraters(2, good, size).error.find("is of a wrong size"), std::string::npos) << size;
+  EXPECT_NE(withCraters(0xffffffff, good, kCraterBytes).error.find("is of a wrong size"), std::string::npos);
+  Crater wrong = good;
+  wrong.depth_q = -1;
+  EXPECT_NE(withCraters(1, wrong, kCraterBytes).error.find("D5 is -0.0001 m"), std::string::npos);
+  wrong = good;
+  wrong.crest_radius_q = INT32_MIN;
+  EXPECT_NE(withCraters(1, wrong, kCraterBytes).error.find("R2 is -214748.3648 m"), std::string::npos);
 }
 
 TEST_F(Session, ASnapshotHoldsTheParametersOfItsTick) {

@@ -207,7 +207,7 @@ class ConsoleOnPipe : public ::testing::Test {
   std::vector<std::string> answerTo(const std::vector<std::string>& pieces) {
     std::vector<std::string> said;
     std::promise<void> ended;
-    const Console console(pipe_[0], queue_, [&](const std::string& line) {
+    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) {
       said.push_back(line);
       if (line == "console: the input has ended") ended.set_value();
     });
@@ -219,6 +219,7 @@ class ConsoleOnPipe : public ::testing::Test {
 
   int pipe_[2] = {-1, -1};
   ChangeQueue queue_;
+  CraterQueue craters_;
 };
 
 TEST_F(ConsoleOnPipe, LinesBecomeChangesHoweverTheyArrive) {
@@ -233,6 +234,19 @@ TEST_F(ConsoleOnPipe, LinesBecomeChangesHoweverTheyArrive) {
   ASSERT_EQ(changes[1].values.size(), 2u);
   EXPECT_EQ(changes[1].values[1].value, 4);
   EXPECT_EQ(changes[2].values[0].value, 2) << "the last line needs no end";
+}
+
+TEST_F(ConsoleOnPipe, CratersAreQueuedAndBadOnesSaid) {
+  const auto said =
+      answerTo({"crater 1,2,0.5,1,0.3\n", "  crater 1,2,0.5\ncrater\nroughness=0.5\ncrater 3,2,0.5,1,0.3,0.1,0.2"});
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_EQ(said[0], "console: crater: '1,2,0.5' is not X,Y,R1,R2,D5[,H4|balanced][,NOISE]; there is none");
+  EXPECT_EQ(said[1], "console: 'crater' is not NAME=VALUE; nothing changes");
+  const auto craters = craters_.tryTake();
+  ASSERT_EQ(craters.size(), 2u);
+  EXPECT_TRUE(craters[0].balanced);
+  EXPECT_EQ(craters[1].crater.rim_height_q, 1000);
+  EXPECT_EQ(queue_.tryTake().size(), 1u);
 }
 
 TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
@@ -252,7 +266,7 @@ TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
 TEST_F(ConsoleOnPipe, EndsWhileItsInputStaysOpen) {
   std::vector<std::string> said;
   {
-    const Console console(pipe_[0], queue_, [&](const std::string& line) { said.push_back(line); });
+    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) { said.push_back(line); });
   }
   EXPECT_TRUE(said.empty());
 }

@@ -161,6 +161,8 @@ void readScene(TableReader& file, const SceneErrors& errors, const std::filesyst
   readPathTables(file, errors, draft);
   readBodyTables(file, draft);
   readVehicleTables(file, draft);
+  if (errors.failed()) return;
+  readCraterTables(file, errors, draft);
   file.finish();
 }
 

@@ -23,6 +23,8 @@ void readMeshTables(TableReader& file, const SceneErrors& errors, SceneDraft& dr
 void readPathTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
 void readBodyTables(TableReader& file, SceneDraft& draft);
 void readVehicleTables(TableReader& file, SceneDraft& draft);
+/// [craters] and every [[crater]] (crater_tables.cpp); after the size of the world.
+void readCraterTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
 
 /// A file named in a scene, from the scene's directory.
 std::string filePath(const SceneDraft& draft, const std::string& named);

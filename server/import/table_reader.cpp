@@ -67,6 +67,23 @@ std::int64_t TableReader::integer(std::string_view key, const Range& range, std:
   return otherwise.value_or(0);
 }
 
+Span TableReader::span(std::string_view key, const Range& range, std::optional<double> otherwise) {
+  const toml::node* node = find(key);
+  if (!node || !node->is_array()) {
+    const double value = number(key, range, otherwise);
+    return {value, value};
+  }
+  const toml::array& pair = *node->as_array();
+  if (pair.size() != 2) {
+    wrong(key, "must be a number or [least, most]");
+    return {};
+  }
+  const auto least = numberOf(pair[0], key, range), most = numberOf(pair[1], key, range);
+  if (!least || !most) return {};
+  if (*least > *most) wrong(key, fmt::format("{} is more than {}", plainNumber(*least), plainNumber(*most)));
+  return {*least, *most};
+}
+
 bool TableReader::flag(std::string_view key, bool otherwise) {
   const toml::node* node = find(key);
   if (!node) return otherwise;

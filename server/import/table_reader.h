@@ -33,6 +33,11 @@ struct Range {
   std::string_view unit;
 };
 
+/// What a value may be drawn from; one number: both are the same.
+struct Span {
+  double least = 0, most = 0;
+};
+
 /// Reads one table of a scene file key by key. Whatever is wrong goes to the SceneErrors, with file, line and key, and
 /// the default (or zero) is returned: check failed() after a table. A key that nobody read is an error of finish().
 class TableReader {
@@ -44,6 +49,8 @@ class TableReader {
   /// Without a default, a missing key is an error.
   double number(std::string_view key, const Range& range, std::optional<double> otherwise = {});
   std::int64_t integer(std::string_view key, const Range& range, std::optional<std::int64_t> otherwise = {});
+  /// A number, or [least, most]. Without a default, a missing key is an error.
+  Span span(std::string_view key, const Range& range, std::optional<double> otherwise = {});
   bool flag(std::string_view key, bool otherwise);
   std::string text(std::string_view key, std::optional<std::string> otherwise = {});
   /// A text that must be one of `choices`.

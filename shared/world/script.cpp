@@ -43,6 +43,11 @@ std::vector<Pose> Script::poses(std::int32_t tick) const {
   return result;
 }
 
+std::span<const Crater> Script::craters(std::int32_t tick) const {
+  const auto found = std::ranges::equal_range(base_->pack().craters, tick, {}, &Crater::tick);
+  return {found.begin(), found.end()};
+}
+
 Turn Script::headingAt(const Path& path, const Track& track, std::size_t segment, std::int64_t along_q) const {
   const std::size_t count = track.direction.size();
   const auto lengthOf = [&](std::size_t i) { return track.start_q[i + 1] - track.start_q[i]; };

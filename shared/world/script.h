@@ -1,13 +1,14 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "shared/world/base_terrain.h"
 
 namespace spoor {
 
-/// Poses of a pack's scripted bodies at any tick. All integers; the height comes from the base minus the sinkage, never
-/// from the deformed ground, so a body that passes twice does not dig deeper.
+/// What a pack times itself: poses of its bodies at any tick, and its craters. All integers; the height comes from the
+/// base minus the sinkage, never from the deformed ground, so a body that passes twice does not dig deeper.
 class Script {
  public:
   /// The base's pack must be valid and outlive this.
@@ -15,6 +16,9 @@ class Script {
 
   /// Poses of all bodies after `tick` ticks, in the pack's order. Thread-safe (const).
   std::vector<Pose> poses(std::int32_t tick) const;
+
+  /// The pack's craters of a tick. Thread-safe.
+  std::span<const Crater> craters(std::int32_t tick) const;
 
  private:
   /// A path's segments: start points, directions and the distance from the first waypoint to each start.

@@ -192,6 +192,50 @@ def who_joins_after_a_change_holds_it(scratch):
     expect(code == 0 and hashes[0] in out, f"{out} {err}")
 
 
+def craters_are_the_same_for_all(scratch):
+    """Craters of the scene, of the command line, of the console and of a client; one client from the start, one that asks, one late."""
+    session, figures = scratch / "craters.session", scratch / "craters.json"
+    server = Server(f"--scene={SOURCE}/scenes/craters.toml", "--ticks=420", "--rate=60", "--wait-clients=2", "--console",
+                    "--crater=40:7,20.5,0.3,0.6,0.2", f"--session={session}", f"--json={figures}", stdin=subprocess.PIPE)
+    steady = server.join("steady", f"--out={scratch}/steady")
+    asking = server.join("asking", f"--out={scratch}/asking", "--crater=60:9,21,0.4,0.8,0.25,balanced,0.3", "--crater=60:10,21.5,0.4,0.8,0.3,0.1",
+                         "--crater=61:9,21,1,6,0.5", "--crater=61:9,21,2,1,0.5", "--crater=62:9,21,0.1,0.5,-1", "--crater=100000:9,21,0.4,0.8,0.25")
+    server.line_with(r"tick 40: crater \d+ at \(7, 20.5\) m, R1 0.3 m")
+    ids = [server.line_with(r"tick \d+: crater (\d+) at .*, asked for by client [01]$").group(1) for _ in range(2)]
+    server.process.stdin.write("crater 12,22,0.5\ncrater 12,22,0.3,0.6,0.2,0.05\n")
+    server.process.stdin.flush()
+    server.line_with(r"console: crater: '12,22,0.5' is not X,Y,R1,R2,D5")
+    server.line_with(r"tick \d+: crater \d+ at \(12, 22\) m, R1 0.3 m, R2 0.6 m, D5 0.2 m, H4 0.05 m")
+    late = server.join("late", f"--out={scratch}/late")
+    hashes, outputs = [], {}
+    for name, client in (("steady", steady), ("asking", asking), ("late", late)):
+        code, out, err = finish(client)
+        expect(code == 0 and "mismatches 0" in out, f"client {name} failed with {code}: {out} {err}")
+        hashes.append(client_hash(out))
+        outputs[name] = out
+    for request, id in zip((1, 2), ids):
+        expect(re.search(rf"^request {request}: crater {id} with tick \d+$", outputs["asking"], re.M), outputs["asking"])
+    for request, why in ((3, "R3 = 2 R2 - R1 is 11 m, the scene allows 8 m"), (4, "R1 2 m is more than R2 1 m"), (5, "D5 is -1 m")):
+        expect(re.search(rf"^request {request}: refused: crater: {re.escape(why)}", outputs["asking"], re.M), outputs["asking"])
+    expect("--crater at tick 100000: the session has ended before" in outputs["asking"], outputs["asking"])
+    code, table, err = finish(server.process)
+    expect(code == 0, f"the server failed with {code}: {table} {err}")
+    report = json.loads(figures.read_text())
+    expect(set(hashes) == {report["server_hash"]}, f"clients {hashes}, {table}")
+    expect(report["ledger"]["error"] == 0 and report["ledger"]["craters"] != 0, str(report))
+    expect(report["crater_count"] > 50 and report["craters_left_out"] == 0, str(report))
+    asked = {client["name"]: (client["craters_asked"], client["craters_refused"]) for client in report["client_hashes"]}
+    expect(asked == {"steady": (0, 0), "asking": (5, 3), "late": (0, 0)}, str(asked))
+    for backend in backends():
+        code, out, err = run("spoor-replay", "verify", session, f"--backend={backend}")
+        expect(code == 0 and report["server_hash"] in out, f"replay on {backend}: {out} {err}")
+    code, out, err = run("spoor-replay", "info", session)
+    expect(code == 0 and f"craters {report['crater_count']}, ledger's crater budget {report['ledger']['craters']}" in out, f"{out} {err}")
+    expect(re.search(r"^tick 40: crater \d+ at \(7, 20.5\) m", out, re.M) and "craters more" in out, out)
+    code, out, err = run("spoor-replay", "export", session)
+    expect(code == 0 and sum(int(line.split(",")[-1]) for line in out.splitlines()[1:]) == report["crater_count"], f"{out} {err}")
+
+
 def replay_names_the_damaged_record(scratch):
     session = scratch / "box.session"
     code, _, err = run("spoor-server", f"--scene={SOURCE}/scenes/box.toml", "--port=0", "--ticks=20", "--rate=0", f"--session={session}")
@@ -228,6 +272,7 @@ def a_client_says_that_the_server_went_away(scratch):
 def bad_command_lines_exit_2(scratch):
     for program, option in (("spoor-server", "--nonsense"), ("spoor-server", "--ticks=many"), ("spoor-client", "--nonsense"),
                             ("spoor-server", "--set=5:rubbish=1"), ("spoor-server", "--set=roughness=1"), ("spoor-server", "--set=5:terrainSize=9"),
+                            ("spoor-server", "--crater=1,2,3,4,5"), ("spoor-server", "--crater=5:1,2"), ("spoor-client", "--crater=5:1,2"),
                             ("spoor-replay", "dance"), ("spoor-bench", "--ticks=-1"), ("spoor-import", "--scene=x")):
         code, _, err = run(program, option)
         expect(code == 2 and len(err.strip().splitlines()) == 1, f"{program} {option}: {code} {err}")
@@ -251,6 +296,7 @@ CASES = [
     a_session_on_either_backend_verifies_on_the_other,
     a_session_whose_parameters_change_verifies_on_either_backend,
     who_joins_after_a_change_holds_it,
+    craters_are_the_same_for_all,
     replay_names_the_damaged_record,
     a_client_says_in_one_line_why_it_cannot_join,
     a_client_says_that_the_server_went_away,
