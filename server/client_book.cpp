@@ -197,8 +197,12 @@ void ClientBook::onCraterRequest(PeerId peer, Client& client, const CraterReques
   if (client.stage != Stage::following)
     return refuseCrater(peer, client, request.sequence, "crater: this client does not follow the session yet");
   if (is_over_) return refuseCrater(peer, client, request.sequence, kOverReason);
+  if (unanswered_ >= options_.craters_limit)
+    return refuseCrater(peer, client, request.sequence,
+                        "crater: " + std::to_string(unanswered_) + " wait for a tick already");
   const auto crater = client.craters.admit(pack_, mirror_.poses(), request, now_ms);
   if (!crater) return refuseCrater(peer, client, request.sequence, crater.error());
+  ++unanswered_;
   orders_.push_back({client.report_number, request.sequence, *crater});
 }
 
@@ -212,6 +216,8 @@ void ClientBook::answer(std::span<const CraterAnswer> answers) {
   if (!answers.empty())
     for (const auto& [peer, client] : clients_)
       if (client.stage != Stage::greeting) peers[client.report_number] = peer;
+  SPOOR_ASSERT(answers.size() <= unanswered_);
+  unanswered_ -= answers.size();
   for (const CraterAnswer& answer : answers) {
     const auto found = peers.find(answer.client);
     if (found == peers.end()) continue;

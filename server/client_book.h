@@ -19,6 +19,7 @@ namespace spoor {
 
 struct BookOptions {
   int max_clients = 16;
+  std::size_t craters_limit = 4096;       // of all clients, present or gone, that wait for a tick
   std::int64_t hello_limit_ms = 5000;     // from connecting to the hello
   std::int64_t silence_limit_ms = 15000;  // nothing heard of a client, not even acknowledgements
 };
@@ -96,6 +97,7 @@ class ClientBook {
   BulkPackage pack_package_;
   Clients clients_;
   std::vector<CraterOrder> orders_;
+  std::size_t unanswered_ = 0;  // orders, handed over or not
   std::set<PeerId> closing_;
   std::map<std::uint64_t, ClientReport> reports_;  // in order of joining
   std::uint64_t next_report_ = 0;

@@ -37,7 +37,8 @@ CraterWish wishAt(std::int32_t x_q, std::int32_t y_q) {
 
 /// One client that follows a session of a pack.
 struct Asking {
-  explicit Asking(ScenePack pack) : session(std::move(pack)), rig(kNear, session), player(rig.join("asking")) {
+  explicit Asking(ScenePack pack, const BookOptions& options = {})
+      : session(std::move(pack)), rig(kNear, session, options), player(rig.join("asking")) {
     rig.runUntil([&] { return rig.book.clientsInSync() == 1; });
     rig.play(2);
   }
@@ -191,6 +192,25 @@ TEST(CraterRequests, ThatWaitForATickAreBounded) {
   asking.rig.play(2);
   EXPECT_EQ(asking.player.follower->takeCraterOutcomes().size(), CraterRequests::kPendingLimit);
   EXPECT_EQ(asking.session.state.craters.size(), CraterRequests::kPendingLimit);
+}
+
+TEST(CraterRequests, OfAllClientsTogetherAreBoundedAlsoOfThoseGone) {
+  Asking asking(craterPack(), {.craters_limit = 3});
+  Player& gone = asking.rig.join("gone");
+  asking.rig.runUntil([&] { return asking.rig.book.clientsInSync() == 2; });
+  for (int i = 0; i < 2; ++i) gone.follower->requestCrater(wishAt(60000, 60000));
+  asking.rig.run(20);
+  asking.rig.kill(gone);
+  asking.rig.run(16000);
+  for (int i = 0; i < 2; ++i) asking.player.follower->requestCrater(wishAt(60000, 60000));
+  asking.rig.run(50);
+  const auto refused = asking.player.follower->takeCraterOutcomes();
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_TRUE(contains(refused[0].reason, "crater: 3 wait for a tick already")) << refused[0].reason;
+  asking.rig.play(2);
+  EXPECT_EQ(asking.session.state.craters.size(), 3u);
+  EXPECT_EQ(asking.player.follower->takeCraterOutcomes().size(), 1u);
+  EXPECT_GT(asking.ask(wishAt(60000, 60000)).tick, 0);
 }
 
 TEST(CraterRequests, OfAClientThatHasLeftStillCome) {

@@ -81,6 +81,41 @@ TEST(Sockets, ClientsJoinFollowAndFinish) {
   EXPECT_EQ(late->pack().name, session.pack.name);
 }
 
+TEST(Sockets, ACraterGoesToTheTickLoopAndItsOutcomeBack) {
+  ScenePack pack = noisePack(200, 150, 7, -20000, 20000, 10000000);
+  addBody(pack, tetrahedronMesh(4000), 50000, 60000, 500);
+  pack.crater_limits.radius_q = pack.crater_limits.request_radius_q = 30000;
+  pack.crater_limits.request_height_q = 5000;
+  ScriptedSession session(pack);
+  const auto host = openHost(session);
+  const auto client = startClient(host->port());
+  ASSERT_EQ(updateUntil({client.get()}, [&] { return client->inSync(); }), "");
+  CraterWish wish;
+  wish.crater.x_q = wish.crater.y_q = 60000;
+  wish.crater.crest_radius_q = 10000;
+  wish.crater.depth_q = 3000;
+  const std::uint32_t first = client->requestCrater(wish);
+  wish.crater.depth_q = -1;
+  const std::uint32_t second = client->requestCrater(wish);
+  std::vector<CraterOrder> orders;
+  ASSERT_EQ(updateUntil({client.get()}, [&] { return !(orders = host->tryTakeCraters()).empty(); }), "");
+  ASSERT_EQ(orders.size(), 1u);
+  EXPECT_EQ(orders[0].sequence, first);
+  session.arriving = {orders[0].crater};
+  host->publish(session.step());
+  host->answer({{orders[0].client, orders[0].sequence, 1, 0}});
+  std::map<std::uint32_t, CraterOutcome> outcomes;
+  const auto heard = [&] {
+    for (const CraterOutcome& outcome : client->takeCraterOutcomes()) outcomes[outcome.sequence] = outcome;
+    return outcomes.size() == 2 && client->state().tick == 1;
+  };
+  ASSERT_EQ(updateUntil({client.get()}, heard), "");
+  EXPECT_EQ(outcomes[first].tick, 1);
+  EXPECT_EQ(outcomes[second].tick, 0);
+  EXPECT_EQ(client->state().craters.size(), 1u);
+  EXPECT_EQ(stateHash(client->state()), session.hash_at[1]);
+}
+
 TEST(Sockets, AClosedPortIsAnError) {
   std::uint16_t port = 0;
   {
