@@ -3,9 +3,13 @@
 
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <random>
 
+#include "shaders/host/shader_loader.h"
+#include "shaders/host/tick_tables.h"
 #include "tests/gl_sessions.h"
 
 namespace spoor::test {
@@ -342,6 +346,55 @@ TEST_P(GlCraters, ASessionGoesFromNativeToGlAndBack) {
     const auto expected = reference.step(session.poses[i], {}, session.craters[i]);
     ASSERT_NO_FATAL_FAILURE(compareResults(simulation->step(session.poses[i], {}, session.craters[i]), expected));
   }
+}
+
+TEST_P(GlCraters, ABackendThatForgetsKnowsNoneOfTheCratersBefore) {
+  const World world(stillPack(130, 70, 33));
+  const auto compareOne = [&](const std::vector<Crater>& craters) {
+    Simulation simulation = world.simulateOn(GetParam()), native = world.simulate();
+    const Session session{{{}, {}}, {{}, craters}, {}};
+    ASSERT_NO_FATAL_FAILURE(compareSession(simulation, native, session));
+    EXPECT_EQ(native.state().craters.table().generation, 1u) << "as that of the other session";
+  };
+  ASSERT_NO_FATAL_FAILURE(compareOne({craterOf(30000, 30000, 5000, 9000, 1000, 3000)}));
+  const Crater other = craterOf(100000, 40000, 3000, 7000, 900, 4000);
+  ASSERT_NO_FATAL_FAILURE(compareOne({other, other}));
+}
+
+TEST_P(GlCraters, AShaderThatDoesNotCompileFailsTheFirstTick) {
+  namespace fs = std::filesystem;
+  const fs::path copy = fs::path(::testing::TempDir()) / ("spoor-crater-shaders-" + GetParam().name);
+  fs::remove_all(copy);
+  fs::copy(shaderFolder(), copy, fs::copy_options::recursive);
+  std::ofstream(copy / "sim" / "crater_settle.comp") << "#version 450 core\nvoid main() { nonsense }\n";
+  ASSERT_EQ(setenv("SPOOR_SHADERS", copy.c_str(), 1), 0);
+  const World world(stillPack(70, 70, 34));
+  Simulation simulation(world.base, world.id, makeOwnBackend(glOptionsOf(GetParam())));
+  const auto failed = simulation.step({}, {}, std::vector{craterOf(30000, 30000, 5000, 9000, 1000, 3000)});
+  unsetenv("SPOOR_SHADERS");
+  fs::remove_all(copy);
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().find("crater_settle.comp:2"), std::string::npos) << failed.error();
+  EXPECT_EQ(simulation.state().craters.size(), 0u);
+}
+
+TEST(GlCratersTables, SoilMeetsTheHeightLimitWhereACraterMayLiftTheGroundToIt) {
+  const ScenePack pack = stillPack(64, 64, 35);
+  TickPlan plan;
+  plan.parameters.obstacle_threshold_q = 500;
+  plan.active = {{0, 0}};
+  const std::vector<int> slots = {0};
+  const MeshTable meshes = makeMeshTable(pack);
+  const std::vector<CellBox> cratered = {{3, 4, 9, 8}};
+  const auto beneath = [&](std::int32_t highest, std::span<const CellBox> boxes) {
+    return makeTickTables(pack, meshes, plan, slots, highest, {}, boxes).beneath;
+  };
+  constexpr std::int32_t kRaise = 3 * rules::kCraterHeightLimit;
+  EXPECT_FALSE(beneath(rules::kHeightLimit - 501, {}));
+  EXPECT_TRUE(beneath(rules::kHeightLimit - 501, cratered));
+  EXPECT_TRUE(beneath(rules::kHeightLimit - 500 - kRaise, cratered));
+  EXPECT_FALSE(beneath(rules::kHeightLimit - 501 - kRaise, cratered));
+  EXPECT_FALSE(beneath(rules::kHeightLimit - 501, std::vector<CellBox>{{}}));
 }
 
 TEST_P(GlCraters, WhatIsFarFromLiveGroundCostsTheDeviceNothing) {

@@ -11,6 +11,7 @@
 
 #include "shaders/host/gl_context.h"
 #include "shaders/host/stage_clock.h"
+#include "shaders/host/tick_results.h"
 #include "shared/base/assert.h"
 #include "shared/base/thread_pool.h"
 
@@ -44,16 +45,6 @@ std::int64_t pairBytes(SlopeRule rule, RelaxSchedule schedule) {
 }
 
 const Status kNotCurrent = Error{"gl: the context cannot be made current on this thread"};
-
-CellBox boxOf(const TileChange& change) {
-  return {change.x, change.y, change.x + change.width, change.y + change.height};
-}
-
-/// @param differences  of the box's cells, row-major
-void addBox(PlaneCells& cells, const CellBox& box, const std::int32_t* differences) {
-  for (int y = box.y0; y < box.y1; ++y)
-    for (int x = box.x0; x < box.x1; ++x) cells[std::size_t(y * rules::kTileSize + x)] += *differences++;
-}
 
 /// A tick between submit() and settle().
 struct Submitted {
@@ -360,11 +351,9 @@ class GlBackend final : public Backend {
       Uncollected::Place& place = places[active];
       place.cratered = tick.active.cratered[active];
       place.first_cratered = head_.staged_cells + tile.first_change;
-      const std::int64_t cells = std::int64_t(tile.x1 - tile.x0) * (tile.y1 - tile.y0);
-      const auto gained = std::int64_t(joined(tile.gained)) - (cells << 31);
       // The hash of the tick's end: commitTick keeps it where no later stage changed the tile, and sets it elsewhere.
       Tile& live = *tick.active.tiles[active];
-      commitCraters(live, gained, hashOf(resultOf(tick, active), live, compactsIn(tick.plan)), state);
+      commitCraters(live, gainedOf(tile), hashOf(resultOf(tick, active), live, compactsIn(tick.plan)), state);
     }
   }
 
@@ -372,29 +361,6 @@ class GlBackend final : public Backend {
   static std::int64_t bytesOf(std::int64_t cells) { return cells * std::int64_t(sizeof(std::int32_t)); }
 
   static bool compactsIn(const TickPlan& plan) { return plan.parameters.compression_q16 > 0; }
-
-  static std::uint64_t joined(const rules::uint (&halves)[2]) { return halves[0] + (std::uint64_t(halves[1]) << 16); }
-
-  /// @param tile  with its compacted soil as of the tick before
-  static std::uint64_t hashOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
-    const std::uint64_t hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
-    // What was compacted in earlier ticks is on the device only where this one compacts.
-    return compacts ? hash : hash + planeHash(tile.at, Plane::compacted, tile.compacted());
-  }
-
-  /// @param tile  as above
-  static TileOutcome outcomeOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
-    TileOutcome outcome;
-    if (result.x1 == 0) return outcome;
-    outcome.change.x = std::uint8_t(result.x0);
-    outcome.change.y = std::uint8_t(result.y0);
-    outcome.change.width = std::uint8_t(result.x1 - result.x0);
-    outcome.change.height = std::uint8_t(result.y1 - result.y0);
-    outcome.hash = hashOf(result, tile, compacts);
-    outcome.compacted = compacts ? std::int64_t(joined(result.compacted)) : tile.compacted_sum;
-    outcome.ground = std::int64_t(joined(result.height)) - (std::int64_t(rules::kTileCells) << 30);
-    return outcome;
-  }
 
   /// The effect's figures.
   void fillIn(const Submitted& tick, std::int64_t tile_count, TickEffect& effect) const {

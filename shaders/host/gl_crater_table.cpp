@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kGroup = 64;
 static_assert(sizeof(rules::CraterHead) == 32 && sizeof(rules::CraterNode) == 20);
-static_assert(kCratersLimit / kGroup <= 65535, "groups of a row; a lane takes a record");
 
 constexpr rules::CraterHead kNone{1, 0, 0, -1, 0, 1, {}};
 constexpr std::int64_t kNodesBytes =

@@ -123,6 +123,7 @@ class TableMaker {
       craters.active.push_back(int(i));
       craters.cells += std::int64_t(box.x1 - box.x0) * (box.y1 - box.y0);
     }
+    if (craters.tiles.empty()) return;
     craters.range = writer_.put(craters.tiles);
     const int groups_per_tile = rules::kTileCells / rules::kCraterLaneCells / shape_.group;
     craters.groups = writer_.dispatch(std::int64_t(craters.tiles.size()) * groups_per_tile, shape_);
