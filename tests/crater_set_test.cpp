@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <random>
 
 #include "tests/scenes.h"
@@ -77,21 +78,38 @@ TEST(CraterSet, FillsWhatEveryRecordTogetherDoesInHashCellsOfAnySide) {
   }
 }
 
-TEST(CraterSet, FillsTheChangeOfNewRecords) {
+TEST(CraterSet, ChangesTilesByWhatNewRecordsAdd) {
   const ScenePack pack = cratersPack(7000);
   const std::vector<Crater> craters = randomCraters(pack, 2, 60);
-  const CraterSet set = setOf(pack, craters);
-  for (const std::size_t first_new : {std::size_t(0), std::size_t(1), std::size_t(31), std::size_t(59), craters.size()})
-    for (const auto& [x, y, columns, rows] :
-         {std::array{0, 0, kWidth, kHeight}, {64, 64, 64, 46}, {30, 20, 1, 1}, {-5, -5, 20, 20}}) {
-      std::vector<std::int32_t> change(std::size_t(columns) * std::size_t(rows), 999);
-      set.fillChange(x, y, columns, rows, first_new, change);
-      for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-          ASSERT_EQ(change[std::size_t(row * columns + column)],
-                    totalAt(pack, craters, x + column, y + row) -
-                        totalAt(pack, std::span(craters).first(first_new), x + column, y + row))
-              << first_new << " old ones, cell " << x + column << ", " << y + row;
+  const TileCoordinate extent = tileExtent(pack);
+  for (std::int32_t tile_y = 0; tile_y < extent.y; ++tile_y)
+    for (std::int32_t tile_x = 0; tile_x < extent.x; ++tile_x) {
+      const TileCoordinate at{tile_x, tile_y};
+      PlaneCells height{}, bedrock;
+      bedrock.fill(-8000);
+      CraterSet set(pack);
+      std::unique_ptr<TileCraters> kept, none;
+      std::size_t before = 0;
+      for (const std::size_t count :
+           {std::size_t(1), std::size_t(2), std::size_t(31), std::size_t(59), craters.size()}) {
+        set.add(std::span(craters).subspan(before, count - before));
+        PlaneCells expected = height, other = height;
+        std::int64_t gained = 0;
+        for (int i = 0; i < rules::kTileCells; ++i) {
+          const int x = at.x * rules::kTileSize + i % rules::kTileSize,
+                    y = at.y * rules::kTileSize + i / rules::kTileSize;
+          const int change = totalAt(pack, std::span(craters).first(count), x, y) -
+                             totalAt(pack, std::span(craters).first(before), x, y);
+          expected[std::size_t(i)] = std::max(expected[std::size_t(i)] + change, -8000);
+          gained += expected[std::size_t(i)] - height[std::size_t(i)];
+        }
+        none.reset();
+        EXPECT_EQ(addCraters(at, other, bedrock, set, before, none), gained) << "nothing kept, " << count;
+        EXPECT_EQ(addCraters(at, height, bedrock, set, before, kept), gained) << "sums kept, " << count;
+        ASSERT_EQ(other, expected);
+        ASSERT_EQ(height, expected);
+        before = count;
+      }
     }
 }
 

@@ -141,7 +141,7 @@ void compareCells(const BackendCase& backend_case, const World& world,
     const std::size_t first_new = set.size();
     set.add(result->update.craters);
     for (const auto& tile : tiles) {
-      gained += addCraters(tile->at, tile->height(), *tile->bedrock, world.pack, set, first_new);
+      gained += addCraters(tile->at, tile->height(), *tile->bedrock, set, first_new, tile->craters);
       const Tile* live = simulation.state().tiles.find(tile->at);
       ASSERT_NE(live, nullptr);
       for (int i = 0; i < rules::kTileCells; ++i)

@@ -37,7 +37,7 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick, std
   auto tile = makeTile(at, {&base, &state.craters}, tick);
   if (held != nullptr) {
     tile->height() = held->height();
-    addCraters(at, tile->height(), *tile->bedrock, pack, state.craters, first_new_crater);
+    addCraters(at, tile->height(), *tile->bedrock, state.craters, first_new_crater, tile->craters);
   }
   const PlaneCells before = tile->height();
   const std::uint64_t seed = mix64(std::uint64_t(tick) << 32 | std::uint64_t(at.y) << 16 | std::uint64_t(at.x));

@@ -10,7 +10,7 @@ SPOOR_RULES_BEGIN
 
 RULE_CONST kCraterReachLimit = (1 << 23) - 1;  // R3
 RULE_CONST kCraterHeightLimit = 1 << 20;       // H4 and D5
-RULE_CONST kCraterSumLimit = (1 << 30) - 1;    // of depths, and of rims, at a cell
+RULE_CONST kCraterSumLimit = (1 << 29) - 1;    // of depths, and of rims, at a cell: deeper than any soil
 RULE_CONST kNoiseSpokes = 12;                  // lattice cells round the centre, of the first octave
 RULE_CONST kNoiseBits = 27;                    // of fractions in the noise
 RULE_CONST kNoiseOne = 1 << kNoiseBits;
