@@ -168,6 +168,7 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
     for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
     payload.put(std::uint32_t(world_.pack.bodies.size()));
     for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
+    payload.put(std::uint32_t(0));  // craters
     ByteWriter block;
     putParameters(block, parameters);
     block.bytes.resize(size);
@@ -186,7 +187,7 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
   EXPECT_EQ(withParameters(good, kParametersBytes).ticks, 1);
   EXPECT_EQ(withParameters(good, 0).error, "") << "none";
   for (const std::size_t size : {std::size_t(1), kParametersBytes - 1, kParametersBytes + 1, 2 * kParametersBytes})
-    EXPECT_NE(withParameters(good, size).error.find("does not fit"), std::string::npos) << size;
+    EXPECT_NE(withParameters(good, size).error.find("of a wrong size"), std::string::npos) << size;
   Parameters wrong = good;
   wrong.spread_cells = 65;
   EXPECT_NE(withParameters(wrong, kParametersBytes).error.find("spread_cells is 65"), std::string::npos);
