@@ -296,6 +296,33 @@ TEST(CraterSet, AtTheFarCornerOfTheLargestMap) {
   EXPECT_EQ(beyond[0], 0);
 }
 
+TEST(CraterSet, LooksAtTheRecordsOfTheCellsThatABoxMeetsAndAtNoOthers) {
+  const ScenePack pack = cratersPack(1875);
+  const std::int32_t side = pack.crater_limits.hash_cell_q;
+  const std::vector<Crater> craters = randomCraters(pack, 12, 600);
+  const CraterSet set = setOf(pack, craters);
+  std::size_t all_read = 0, all_in_buckets = 0;
+  for (int y = 0; y < kHeight; y += 7)
+    for (int x = 0; x < kWidth; x += 5) {
+      std::size_t read = 999;
+      set.meeting({x, y, x + 1, y + 1}, &read);
+      std::size_t expected = 0;
+      for (int cell_y = y * 1000 / side; cell_y <= (y * 1000 + 999) / side; ++cell_y)
+        for (int cell_x = x * 1000 / side; cell_x <= (x * 1000 + 999) / side; ++cell_x) {
+          expected += std::size_t(std::ranges::count_if(craters, [&](const Crater& crater) {
+            const auto outer = std::int32_t(crater.outerRadius());
+            return crater.x_q + outer >= cell_x * side && crater.x_q - outer < (cell_x + 1) * side &&
+                   crater.y_q + outer >= cell_y * side && crater.y_q - outer < (cell_y + 1) * side;
+          }));
+          const auto bucket = std::size_t(rules::craterBucket(cell_x, cell_y, set.table().mask()));
+          all_in_buckets += std::size_t(set.table().used[bucket]);
+        }
+      ASSERT_EQ(read, expected) << "cell " << x << ", " << y;
+      all_read += read;
+    }
+  EXPECT_LT(all_read, all_in_buckets) << "buckets hold other cells' records too";
+}
+
 TEST(CraterSet, AFarCraterIsNotInAQuery) {
   ScenePack pack = flatPack(600000, 1000);  // 60 km
   pack.crater_limits = {.radius_q = 300000, .hash_cell_q = 750000};

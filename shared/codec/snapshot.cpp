@@ -6,6 +6,9 @@
 namespace spoor {
 namespace {
 
+// Far more than craters and events can give, or take from, as many tiles as there may be; far less than overflows.
+constexpr std::int64_t kBudgetLimit = std::int64_t(1) << 61;
+
 Status readCraters(ByteReader& reader, const ScenePack& pack, WorldState& state) {
   const std::size_t count = reader.get<std::uint32_t>();
   if (count > kCratersLimit || count * kCraterBytes > reader.left())
@@ -59,6 +62,9 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   state.parameters = getParameters(reader);
   const auto crater_budget = reader.get<std::int64_t>();
   const auto event_budget = reader.get<std::int64_t>();
+  for (const std::int64_t budget : {crater_budget, event_budget})
+    if (budget > kBudgetLimit || budget < -kBudgetLimit)
+      return Error{"snapshot: a budget of " + std::to_string(budget) + " is more than its tiles can hold"};
   if (Status status = readCraters(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};

@@ -109,7 +109,8 @@ void CraterSet::build() {
   ++table_.generation;
 }
 
-std::vector<std::uint32_t> CraterSet::meeting(const CellBox& cells) const {
+std::vector<std::uint32_t> CraterSet::meeting(const CellBox& cells, std::size_t* read) const {
+  if (read != nullptr) *read = 0;
   std::vector<std::uint32_t> found;
   const CellBox box{std::max(cells.x0, 0), std::max(cells.y0, 0), std::min(cells.x1, width_cells_),
                     std::min(cells.y1, height_cells_)};
@@ -123,6 +124,7 @@ std::vector<std::uint32_t> CraterSet::meeting(const CellBox& cells) const {
       const rules::CraterEntry* entry = table_.entries.data() + table_.first[bucket];
       for (const rules::CraterEntry* end = entry + table_.used[bucket]; entry != end; ++entry) {
         if (entry->tag != tag) continue;
+        if (read != nullptr) ++*read;
         const Crater& crater = records_[std::size_t(entry->record)];
         const std::int64_t outer = crater.outerRadius();
         if (crater.x_q + outer >= west && crater.x_q - outer <= east && crater.y_q + outer >= south &&

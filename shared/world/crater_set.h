@@ -46,7 +46,8 @@ class CraterSet {
 
   /// Ids of the records whose square meets a box of cells, in order, each once. Looks only into the hash cells that the
   /// box meets.
-  std::vector<std::uint32_t> meeting(const CellBox& cells) const;
+  /// @param read  where given: how many records it looked at, each once for each of those cells
+  std::vector<std::uint32_t> meeting(const CellBox& cells, std::size_t* read = nullptr) const;
 
   /// D(S) at every `stride`-th cell from (x, y) on, row-major [rows * columns], 0.1 mm; 0 outside the map.
   void fill(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns, std::int32_t rows,
