@@ -245,4 +245,39 @@ Camera overviewView(const TerrainView& view, double aspect) {
   return camera;
 }
 
+Camera craterView(const TerrainView& view, std::uint32_t id, CraterLook look, double sun_azimuth_deg, double aspect) {
+  SPOOR_ASSERT(id < view.state->craters.size());
+  constexpr double kEye_m = 1.7;  // of a man, over the ground
+  const Crater& crater = view.state->craters.records()[id];
+  const glm::dvec2 centre_m = glm::dvec2(crater.x_q, crater.y_q) / kUnits;
+  const double outer_m = double(crater.outerRadius()) / kUnits, crest_m = crater.crest_radius_q / kUnits;
+  const double azimuth = glm::radians(sun_azimuth_deg - 75.0);
+  const glm::dvec2 ahead(std::cos(azimuth), std::sin(azimuth));
+  const auto onGround = [&](const glm::dvec2& place_m, double over_m) {
+    return glm::dvec3(place_m, groundHeight(view, place_m) + over_m);
+  };
+  const glm::dvec3 edge_m = onGround(centre_m - ahead * outer_m, 0.0);  // about as high as before the explosion
+  if (look == CraterLook::above) {
+    Camera camera = cameraLookingAt({centre_m, edge_m.z + 500.0}, {centre_m, 0.0});
+    camera.orthographic_height_m = 2.6 * std::max(outer_m, outer_m / aspect);
+    return camera;
+  }
+  Camera camera;
+  if (look == CraterLook::ground) {
+    camera = cameraLookingAt(onGround(centre_m - ahead * (1.2 * outer_m + 2.5), kEye_m), {centre_m, edge_m.z});
+  } else if (look == CraterLook::inside) {
+    const glm::dvec3 eye_m = onGround(centre_m - ahead * 0.35 * crest_m, kEye_m);
+    const glm::dvec3 rim_m = onGround(centre_m + ahead * crest_m, 0.0);
+    camera = cameraLookingAt(eye_m, {glm::dvec2(rim_m), std::min(rim_m.z, eye_m.z + 0.25 * crest_m)});
+    camera.field_of_view_deg = 70.0;
+  } else {
+    glm::dvec3 eye_m(centre_m - ahead * 2.1 * outer_m, edge_m.z + 1.15 * outer_m);
+    keepAboveGround(view, eye_m, 0.3 * outer_m);
+    camera = cameraLookingAt(eye_m, {centre_m, edge_m.z - 0.1 * outer_m});
+    camera.field_of_view_deg = 45.0;
+  }
+  camera.focus_m = centre_m;
+  return camera;
+}
+
 }  // namespace spoor
