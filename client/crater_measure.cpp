@@ -26,8 +26,8 @@ constexpr double kDisc_m = 500.0;  // diameter
 constexpr int kCraterCounts[] = {0, 100, 250, 500, 1000};
 constexpr int kHashCells_m[] = {25, 50, 75, 125, 250, 500, 0};  // 0: one as large as the world
 constexpr std::uint32_t kSeed = 6;
-constexpr int kWarmUpFrames = 3;
-constexpr int kLeastFrames = 5;
+constexpr int kWarmUpFrames = 1;
+constexpr int kLeastFrames = 3;
 constexpr double kLeastTime_s = 1.0;
 
 ScenePack emptyPack(int hash_cell_m) {

@@ -38,7 +38,7 @@ struct Arguments {
   bool no_bodies = false;
   std::int64_t range_mm = 0;
   std::int64_t frame_count = 0;
-  double sun_deg = RenderSettings().sun_elevation_deg;
+  double sun_deg = 0.0;
   BackendChoice backend;
   PictureArguments picture;
 };
@@ -75,6 +75,14 @@ constexpr CraterFigure kCraterFigures[] = {
     {"deep", CraterLooks::deep, CraterLook::at_once},     {"shallow", CraterLooks::shallow, CraterLook::at_once},
     {"inside", CraterLooks::deep, CraterLook::inside},    {"ground", CraterLooks::single, CraterLook::ground},
     {"above", CraterLooks::single, CraterLook::above}};
+
+constexpr double kCraterSun_deg = 34.0;  // a lower one leaves cavities dark
+
+/// Above the horizon.
+double sunOf(const Arguments& arguments, bool of_crater) {
+  if (arguments.sun_deg > 0.0) return arguments.sun_deg;
+  return of_crater ? kCraterSun_deg : RenderSettings().sun_elevation_deg;
+}
 
 Result<std::unique_ptr<Backend>> backendFor(const Arguments& arguments) {
   return makeBackend(arguments.backend, [](const std::string& line) { fmt::print("{}\n", line); });
@@ -113,7 +121,7 @@ Status drawCraters(const Arguments& arguments, RenderSettings settings) {
   if (!backend) return Error{backend.error()};
   FigureScene scene(craterLooksPack(), std::move(*backend));
   if (const Status run = scene.runTo(scene.pack().default_ticks); !run) return run;
-  settings.sun_elevation_deg = arguments.sun_deg;
+  settings.sun_elevation_deg = sunOf(arguments, true);
   Renderer renderer(scene.pack(), settings);
   for (const CraterFigure& figure : kCraterFigures) {
     renderer.draw(scene.view(), craterView(scene.view(), std::uint32_t(figure.id), figure.look,
@@ -191,7 +199,7 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
                              scene.state().craters.size(), tick)};
 
   if (arguments.look == "columns") settings.shade = Shade::columns;
-  settings.sun_elevation_deg = arguments.sun_deg;
+  settings.sun_elevation_deg = sunOf(arguments, craterLookNamed(arguments.look) != nullptr);
   settings.columns = {-std::int32_t(arguments.range_mm) * 10, 0, std::int32_t(arguments.range_mm) * 10};
   settings.bodies = !arguments.no_bodies;
   Renderer renderer(scene.pack(), settings);
@@ -244,8 +252,8 @@ int run(int argc, char** argv) {
   options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
   options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
               &arguments.range_mm, 0, 100000);
-  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show", &arguments.sun_deg, 1.0,
-              89.0);
+  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show; 0: 21, of craters 34",
+              &arguments.sun_deg, 0.0, 89.0);
   options.add("frames", "COUNT", "with --pack: run and draw so many ticks more, and print what a picture takes",
               &arguments.frame_count, 0, 100000);
   options.addFlag("highlight", "mark the tiles that the last tick simulated", &arguments.highlight);

@@ -14,7 +14,7 @@ struct CraterLook {
 vec3 bareSoil() {
   if (frame.world.z == kGroundSand) return vec3(0.330, 0.215, 0.115);
   if (frame.world.z == kGroundMud) return vec3(0.185, 0.120, 0.072);
-  if (frame.world.z == kGroundDirt) return vec3(0.225, 0.100, 0.052);
+  if (frame.world.z == kGroundDirt) return vec3(0.170, 0.082, 0.046);
   return vec3(0.205, 0.132, 0.078);
 }
 
@@ -48,7 +48,7 @@ vec2 fineSlope(CraterShape shape, vec2 away_m, uint turn, float footprint_m) {
     slope += shown * high_m / float(2 << fold) *
              vec2((further - here) / (part * crest_m / 16.0), (around - here) / (part * arc_m));
   }
-  return slope.x * ahead + slope.y * vec2(-ahead.y, ahead.x);
+  return (slope.x * ahead + slope.y * vec2(-ahead.y, ahead.x)) * 0.7 * smoothstep(0.10, 0.55, radius);
 }
 
 /// How rough borders are about the clods of a place: -1 .. 1, and how much of it can be seen.
@@ -73,21 +73,22 @@ vec3 craterMarks(CraterShape shape, float away, uint turn, vec2 crumbs, float fo
   uint out_q27 = uint(radius * float(kNoiseOne));
   float ray =
       0.5 + 0.9 * float(noiseOctave(shape.seed + 0x1b873593u, 24, around, out_q27 + (1u << 26))) / float(kNoiseOne);
-  float lobe = 0.5 + 0.9 * float(noiseOctave(shape.seed + 0x68e31da4u, 7, mulHigh(turn, 7u << kNoiseBits), 1u << 26)) /
+  float lobe = 0.5 + 1.1 * float(noiseOctave(shape.seed + 0x68e31da4u, 7, mulHigh(turn, 7u << kNoiseBits), 1u << 26)) /
                          float(kNoiseOne);
 
-  float rim = min(float(shape.crest) / float(shape.outer), 0.80);
+  // From the crest on rays of soil, the longest of them to where the crater ends.
+  float rim = min(0.92 * float(shape.crest) / float(shape.outer), 0.80);
   float beyond = (reach - rim) / (1.0 - rim);
-  float thrown = clamp(0.18 + 0.45 * ray + 0.40 * lobe, 0.12, 0.95);
-  float dense = 1.0 - beyond / thrown + 0.45 * noise;
-  float soft = mix(0.45, 0.10, crumbs.y);
-  float bare = smoothstep(0.28 - soft, 0.28 + soft, dense + 0.55 * crumbs.x);
+  float thrown = clamp(0.50 + 0.50 * ray + 0.35 * lobe, 0.50, 1.40);
+  float dense = 1.25 - 1.1 * max(beyond, 0.0) / thrown + 0.30 * noise;
+  float soft = mix(0.40, 0.10, crumbs.y);
+  float bare = smoothstep(0.25 - soft, 0.25 + soft, dense + 0.60 * crumbs.x);
 
-  float burnt = 1.0 - smoothstep(0.30, 1.02, radius + 0.40 * noise + 0.14 * crumbs.x - 0.16 * (lobe - 0.5));
-  float soot = (1.0 - smoothstep(0.55, 1.0, beyond / thrown +0.3 * crumbs.x)) * smoothstep(0.35, 0.85, ray) * 0.55;
-  float end = 1.0 - smoothstep(0.80, 0.98, reach);
+  float burnt = 1.0 - smoothstep(0.25, 1.05, radius + 0.35 * noise + 0.20 * crumbs.x - 0.20 * (lobe - 0.5));
+  float soot = (1.0 - smoothstep(0.45, 1.0, beyond / thrown + 0.35 * crumbs.x)) * smoothstep(0.40, 0.95, ray) * 0.62;
+  float end = 1.0 - smoothstep(0.90, 0.995, reach + 0.05 * min(crumbs.x, 0.0) + 0.04 * abs(crumbs.x));
   float seen = 1.0 - smoothstep(0.5, 2.0, footprint_m * float(kUnitsPerMetre) / float(shape.outer));
-  return vec3(bare, 0.94 * burnt, soot) * end * seen;
+  return vec3(bare, 0.90 * burnt, soot) * end * seen;
 }
 
 /// All craters at a place of the map. The newest lies over the one before it; two that show fully are as many as count,
@@ -119,8 +120,8 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
     if (cover <= 0.0) continue;
     float open = (1.0 - look.cover) * min(2.0 - counted, 1.0);
     float pale = placeNoise(at, 13, 0x3c6ef372u).x * shownDetail(footprint_m.y, bitsSize(13));
-    vec3 dirt = bareSoil() * (1.0 + 0.9 * soil.x + 0.18 * pale + 0.25 * crumbs.x);
-    vec3 char_black = vec3(0.020, 0.018, 0.017) * (1.0 + 0.8 * soil.x);
+    vec3 dirt = bareSoil() * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
+    vec3 char_black = vec3(0.036, 0.032, 0.030) * (1.0 + 1.2 * soil.x);
     float black = 1.0 - (1.0 - marks.y) * (1.0 - marks.z);
     look.albedo += open * (black * char_black + (1.0 - black) * marks.x * dirt);
     look.bare += open * marks.x;

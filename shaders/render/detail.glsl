@@ -11,8 +11,12 @@ uint detailHash(ivec2 at, uint seed) {
 
 float detailValue(ivec2 at, uint seed) { return float(detailHash(at, seed) >> 8) / 8388608.0 - 1.0; }
 
-/// Value noise in -1 .. 1 and its derivatives per lattice step, at `t` of the way from a lattice point to the next.
-vec3 latticeNoise(ivec2 at, vec2 t, uint seed) {
+/// Value noise in -1 .. 1 and its derivatives per lattice step, at `origin` * per_cell + rel_cells * per_cell.
+vec3 detailNoise(ivec2 origin, vec2 rel_cells, int per_cell, uint seed) {
+  vec2 place = rel_cells * float(per_cell);
+  vec2 low = floor(place);
+  vec2 t = place - low;
+  ivec2 at = origin * per_cell + ivec2(low);
   vec2 s = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
   vec2 ds = 30.0 * t * t * (t * (t - 2.0) + 1.0);
   float a = detailValue(at, seed);
@@ -21,13 +25,6 @@ vec3 latticeNoise(ivec2 at, vec2 t, uint seed) {
   float d = detailValue(at + ivec2(1, 1), seed);
   float k = a - b - c + d;
   return vec3(a + (b - a) * s.x + (c - a) * s.y + k * s.x * s.y, ds * (vec2(b - a, c - a) + k * s.yx));
-}
-
-/// The same at `origin` * per_cell + rel_cells * per_cell.
-vec3 detailNoise(ivec2 origin, vec2 rel_cells, int per_cell, uint seed) {
-  vec2 place = rel_cells * float(per_cell);
-  vec2 low = floor(place);
-  return latticeNoise(origin * per_cell + ivec2(low), place - low, seed);
 }
 
 /// Slope and brightness of the grain; it fades out before it gets finer than a pixel.

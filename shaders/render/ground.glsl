@@ -29,7 +29,8 @@ vec2 footprintAt(vec3 rel, vec2 rel_cells) {
 
 /// What the map's places look like close by, and the craters in them.
 /// @param bounced  the albedo of the ground about the place
-void addDetail(vec2 rel, vec2 footprint_cells, inout vec3 albedo, inout vec3 bounced, inout vec2 slope) {
+void addDetail(vec2 rel, vec2 footprint_cells, inout vec3 albedo, inout vec3 bounced, inout vec2 slope,
+               inout float sky) {
   MapPlace place = mapPlace(rel);
   vec2 footprint_m = footprint_cells * frame.scale.x;
   GroundCover cover = GroundCover(albedo, vec2(0.0));
@@ -38,6 +39,7 @@ void addDetail(vec2 rel, vec2 footprint_cells, inout vec3 albedo, inout vec3 bou
   CraterLook look = craterLookAt(place.at, footprint_m);
   albedo = cover.albedo * (1.0 - look.cover) + look.albedo;
   bounced = bounced * (1.0 - look.cover) + look.albedo;
+  sky = mix(sky, 0.12 + 0.88 * sqrt(sky), look.cover);  // a cavity's walls light each other
   slope += place.facing * frame.look.x * (cover.slope * (1.0 - look.bare) + look.slope);
 }
 
@@ -50,16 +52,16 @@ vec3 shadedGround(vec3 rel, vec2 rel_cells, vec2 footprint) {
 
   vec3 grain = grainAt(rel_cells, footprint.y);
   vec2 slope = relief.gradient + grain.xy;
+  float sky = relief.sky * relief.sky;
   vec3 bounced = groundAlbedo();
   vec3 albedo = bounced * (1.0 + grain.z);
-  if (crater_head.mask >= 0 || frame.world.z >= kGroundDirt) addDetail(rel.xy, footprint, albedo, bounced, slope);
+  if (crater_head.mask >= 0 || frame.world.z >= kGroundDirt) addDetail(rel.xy, footprint, albedo, bounced, slope, sky);
   vec3 normal = normalize(vec3(-slope, 1.0));
   vec2 cell = rel_cells + vec2(frame.origin.xy);
   bool outside = any(lessThan(cell, vec2(-0.5))) || any(greaterThan(cell, vec2(frame.world.xy) - 0.5));
   if (outside) albedo = mix(albedo, vec3(dot(albedo, vec3(0.3333))), 0.6) * 0.85;
 
   float lit = max(dot(normal, frame.sun.xyz), 0.0) * relief.sun * bodyShadow(rel, smooth_normal, 0.01);
-  float sky = relief.sky * relief.sky;
   vec3 colour = albedo * (kSunLight * lit + skyLight(smooth_normal, bounced) * sky);
   return toScreen(withFog(colour, rel));
 }
