@@ -79,16 +79,16 @@ vec3 craterMarks(CraterShape shape, float away, uint turn, vec2 crumbs, float fo
   // From the crest on rays of soil, the longest of them to where the crater ends.
   float rim = min(0.92 * float(shape.crest) / float(shape.outer), 0.80);
   float beyond = (reach - rim) / (1.0 - rim);
-  float thrown = clamp(0.50 + 0.50 * ray + 0.35 * lobe, 0.50, 1.40);
+  float thrown = clamp(0.45 + 0.75 * ray + 0.40 * lobe, 0.45, 1.80);
   float dense = 1.25 - 1.1 * max(beyond, 0.0) / thrown + 0.30 * noise;
   float soft = mix(0.40, 0.10, crumbs.y);
   float bare = smoothstep(0.25 - soft, 0.25 + soft, dense + 0.60 * crumbs.x);
 
-  float burnt = 1.0 - smoothstep(0.25, 1.05, radius + 0.35 * noise + 0.20 * crumbs.x - 0.20 * (lobe - 0.5));
-  float soot = (1.0 - smoothstep(0.45, 1.0, beyond / thrown + 0.35 * crumbs.x)) * smoothstep(0.40, 0.95, ray) * 0.62;
-  float end = 1.0 - smoothstep(0.90, 0.995, reach + 0.05 * min(crumbs.x, 0.0) + 0.04 * abs(crumbs.x));
+  float burnt = 1.0 - smoothstep(0.42, 1.02, radius + 0.40 * noise + 0.20 * crumbs.x - 0.25 * (lobe - 0.5));
+  float soot = (1.0 - smoothstep(0.45, 1.0, beyond / thrown + 0.35 * crumbs.x)) * smoothstep(0.40, 0.95, ray) * 0.70;
+  float end = 1.0 - smoothstep(0.955, 1.0, reach + 0.03 * crumbs.x);
   float seen = 1.0 - smoothstep(0.5, 2.0, footprint_m * float(kUnitsPerMetre) / float(shape.outer));
-  return vec3(bare, 0.90 * burnt, soot) * end * seen;
+  return vec3(bare, 0.96 * burnt, soot) * end * seen;
 }
 
 /// All craters at a place of the map. The newest lies over the one before it; two that show fully are as many as count,
@@ -121,7 +121,7 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
     float open = (1.0 - look.cover) * min(2.0 - counted, 1.0);
     float pale = placeNoise(at, 13, 0x3c6ef372u).x * shownDetail(footprint_m.y, bitsSize(13));
     vec3 dirt = bareSoil() * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
-    vec3 char_black = vec3(0.036, 0.032, 0.030) * (1.0 + 1.2 * soil.x);
+    vec3 char_black = vec3(0.024, 0.021, 0.019) * (1.0 + 1.2 * soil.x);
     float black = 1.0 - (1.0 - marks.y) * (1.0 - marks.z);
     look.albedo += open * (black * char_black + (1.0 - black) * marks.x * dirt);
     look.bare += open * marks.x;
