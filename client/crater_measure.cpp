@@ -43,7 +43,7 @@ ScenePack emptyPack(int hash_cell_m) {
   return pack;
 }
 
-/// Anywhere in the disc; a twentieth of the diameter deep and high, as those of the paper's pictures.
+/// Anywhere in the disc; an eighth of the diameter deep, a twentieth high, as those of the paper's pictures.
 std::vector<Crater> randomCraters(int count) {
   std::mt19937 random(kSeed);
   const auto between = [&](double low, double high) { return low + (high - low) * double(random()) / 4294967296.0; };

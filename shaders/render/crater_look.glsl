@@ -84,7 +84,7 @@ vec3 craterMarks(CraterShape shape, float away, uint turn, vec2 crumbs, float fo
   float soft = mix(0.40, 0.10, crumbs.y);
   float bare = smoothstep(0.25 - soft, 0.25 + soft, dense + 0.60 * crumbs.x);
 
-  float burnt = 1.0 - smoothstep(0.42, 1.02, radius + 0.40 * noise + 0.20 * crumbs.x - 0.25 * (lobe - 0.5));
+  float burnt = 1.0 - smoothstep(0.50, 1.06, radius + 0.40 * noise + 0.20 * crumbs.x - 0.25 * (lobe - 0.5));
   float soot = (1.0 - smoothstep(0.45, 1.0, beyond / thrown + 0.35 * crumbs.x)) * smoothstep(0.40, 0.95, ray) * 0.70;
   float end = 1.0 - smoothstep(0.955, 1.0, reach + 0.03 * crumbs.x);
   float seen = 1.0 - smoothstep(0.5, 2.0, footprint_m * float(kUnitsPerMetre) / float(shape.outer));
