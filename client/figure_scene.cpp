@@ -1,6 +1,7 @@
 #include "client/figure_scene.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "shared/world/script.h"
@@ -46,14 +47,16 @@ FigureScene::FigureScene(ScenePack pack, std::unique_ptr<Backend> backend)
       simulation_(base_, idOf(*pack_), std::move(backend)) {}
 
 Status FigureScene::runTo(std::int32_t tick, const PosesAt& poses_at) {
+  const Script script(base_);
   while (state().tick < tick) {
     const std::vector<Pose> poses = poses_at(state().tick + 1);
+    const std::span<const Crater> craters = script.craters(state().tick + 1);
     if (state().tick + 1 == tick) {
-      auto plan = planTick(*pack_, reach_q_, state(), poses, state().parameters);
+      auto plan = planTick(*pack_, reach_q_, state(), poses, state().parameters, craters);
       if (!plan) return Error{"tick " + std::to_string(tick) + ": " + plan.error()};
       active_ = std::move(plan->active);
     }
-    if (const auto done = simulation_.step(poses); !done)
+    if (const auto done = simulation_.step(poses, {}, craters); !done)
       return Error{"tick " + std::to_string(state().tick + 1) + ": " + done.error()};
   }
   return {};
@@ -99,6 +102,34 @@ FigureScene::PosesAt pressedBoxPoses(const ScenePack& pack) {
     poses[0].y_q += moved_q;
     return poses;
   };
+}
+
+ScenePack craterLooksPack() {
+  constexpr std::int32_t m = 10000;
+  ScenePack pack;
+  pack.name = "crater looks";
+  pack.width_cells = 1536;
+  pack.height_cells = 1024;
+  pack.cell_q = 1000;
+  pack.soil_depth_q = 20 * m;
+  // Swells of some 60 m, with finer ones in them.
+  pack.noise = {21, (std::int64_t(1) << 32) / 600, 4, -pack.soil_depth_q - m, -pack.soil_depth_q + m};
+  pack.default_ticks = 1;
+  pack.crater_limits.radius_q = 40 * m;
+  pack.crater_limits.hash_cell_q = 25 * m;
+  constexpr std::uint16_t kNoise_q16 = 18000;
+  const auto add = [&](double x_m, double y_m, double inner_m, double crest_m, double rim_m, double depth_m) {
+    const auto lengthOf = [](double value_m) { return std::int32_t(value_m * m); };
+    const auto id = std::uint32_t(pack.craters.size());
+    pack.craters.push_back({lengthOf(x_m), lengthOf(y_m), lengthOf(inner_m), lengthOf(crest_m), lengthOf(rim_m),
+                            lengthOf(depth_m), std::uint16_t(id * 977 + 5), kNoise_q16, 1, id});
+  };
+  add(30.0, 30.0, 2.6, 4.6, 0.7, 1.7);
+  add(75.0, 27.0, 2.8, 5.0, 0.8, 1.9);
+  add(81.5, 31.0, 2.4, 4.2, 0.7, 1.6);
+  add(40.0, 75.0, 5.0, 9.0, 2.6, 5.0);
+  add(95.0, 75.0, 4.0, 4.0, 0.0, 0.7);
+  return pack;
 }
 
 }  // namespace spoor

@@ -18,7 +18,7 @@ class FigureScene {
   /// Poses of the pack's bodies after a tick.
   using PosesAt = std::function<std::vector<Pose>(std::int32_t tick)>;
 
-  /// Runs on to `tick`. Errors: the simulation's, with the tick.
+  /// Runs on to `tick`, with the craters that the pack times itself. Errors: the simulation's, with the tick.
   [[nodiscard]] Status runTo(std::int32_t tick, const PosesAt& poses_at);
   /// The same with the bodies as the pack's script moves them.
   [[nodiscard]] Status runTo(std::int32_t tick);
@@ -45,5 +45,16 @@ ScenePack pressedBoxPack(Displacement displacement, Metric metric);
 /// The box is pressed into the ground, then moved on a little along its own axis.
 inline constexpr std::int32_t kPressedBoxTicks = 6;
 FigureScene::PosesAt pressedBoxPoses(const ScenePack& pack);
+
+/// Rolling ground with a crater of each kind: see CraterLooks. No bodies; all of them come with tick 1.
+ScenePack craterLooksPack();
+
+/// Ids of the craters of craterLooksPack().
+struct CraterLooks {
+  static constexpr int single = 0;
+  static constexpr int twin = 2;     // the newer of two that intersect
+  static constexpr int deep = 3;     // with a high rim
+  static constexpr int shallow = 4;  // R1 = R2, no rim (the paper's figure 12)
+};
 
 }  // namespace spoor

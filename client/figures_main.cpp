@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "client/crater_measure.h"
 #include "client/figure_scene.h"
 #include "client/picture_options.h"
 #include "client/views.h"
@@ -28,13 +29,16 @@ struct Arguments {
   std::string pack;
   std::int64_t tick = -1;
   std::string look = "trails";
+  std::int64_t crater = 0;
+  std::string measure;
+  std::string json;
   std::string name;
   bool highlight = false;
   bool everything_active = false;
   bool no_bodies = false;
   std::int64_t range_mm = 0;
   std::int64_t frame_count = 0;
-  double sun_deg = RenderSettings().sun_elevation_deg;
+  double sun_deg = 0.0;
   BackendChoice backend;
   PictureArguments picture;
 };
@@ -55,6 +59,30 @@ constexpr std::pair<const char*, Metric> kMetrics[] = {
 constexpr ColumnSettings kFigureColours{-5000, 0, 40000};
 
 constexpr std::array<std::string_view, 5> kLooks{"trails", "follow", "above", "overview", "columns"};
+constexpr std::pair<std::string_view, CraterLook> kCraterLooks[] = {{"crater", CraterLook::at_once},
+                                                                    {"crater-ground", CraterLook::ground},
+                                                                    {"crater-inside", CraterLook::inside},
+                                                                    {"crater-above", CraterLook::above}};
+
+/// What the pictures of craterLooksPack() show.
+struct CraterFigure {
+  const char* name;
+  int id;
+  CraterLook look;
+};
+constexpr CraterFigure kCraterFigures[] = {
+    {"single", CraterLooks::single, CraterLook::at_once}, {"double", CraterLooks::twin, CraterLook::at_once},
+    {"deep", CraterLooks::deep, CraterLook::at_once},     {"shallow", CraterLooks::shallow, CraterLook::at_once},
+    {"inside", CraterLooks::deep, CraterLook::inside},    {"ground", CraterLooks::single, CraterLook::ground},
+    {"above", CraterLooks::single, CraterLook::above}};
+
+constexpr double kCraterSun_deg = 34.0;  // a lower one leaves cavities dark
+
+/// Above the horizon.
+double sunOf(const Arguments& arguments, bool of_crater) {
+  if (arguments.sun_deg > 0.0) return arguments.sun_deg;
+  return of_crater ? kCraterSun_deg : RenderSettings().sun_elevation_deg;
+}
 
 Result<std::unique_ptr<Backend>> backendFor(const Arguments& arguments) {
   return makeBackend(arguments.backend, [](const std::string& line) { fmt::print("{}\n", line); });
@@ -88,6 +116,22 @@ Status drawDisplacement(const Arguments& arguments, const RenderSettings& settin
   return {};
 }
 
+Status drawCraters(const Arguments& arguments, RenderSettings settings) {
+  auto backend = backendFor(arguments);
+  if (!backend) return Error{backend.error()};
+  FigureScene scene(craterLooksPack(), std::move(*backend));
+  if (const Status run = scene.runTo(scene.pack().default_ticks); !run) return run;
+  settings.sun_elevation_deg = sunOf(arguments, true);
+  Renderer renderer(scene.pack(), settings);
+  for (const CraterFigure& figure : kCraterFigures) {
+    renderer.draw(scene.view(), craterView(scene.view(), std::uint32_t(figure.id), figure.look,
+                                           settings.sun_azimuth_deg, double(settings.width_px) / settings.height_px));
+    const std::string name = fmt::format("crater_{}_{}", figure.name, arguments.picture.ground);
+    if (const Status written = writePicture(renderer, arguments, name); !written) return written;
+  }
+  return {};
+}
+
 Result<ScenePack> readPack(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return Error{path + ": cannot be opened"};
@@ -100,8 +144,16 @@ Result<ScenePack> readPack(const std::string& path) {
   return pack;
 }
 
-Camera cameraFor(const std::string& look, const TerrainView& view, const RenderSettings& settings) {
+const std::pair<std::string_view, CraterLook>* craterLookNamed(std::string_view look) {
+  const auto found = std::ranges::find(kCraterLooks, look, &std::pair<std::string_view, CraterLook>::first);
+  return found == std::end(kCraterLooks) ? nullptr : found;
+}
+
+Camera cameraFor(const Arguments& arguments, const TerrainView& view, const RenderSettings& settings) {
+  const std::string& look = arguments.look;
   const double aspect = double(settings.width_px) / settings.height_px;
+  if (const auto* crater = craterLookNamed(look))
+    return craterView(view, std::uint32_t(arguments.crater), crater->second, settings.sun_azimuth_deg, aspect);
   if (look == "follow") return followView(view, 0);
   if (look == "above") return aboveView(view, aspect);
   if (look == "overview") return overviewView(view, aspect);
@@ -142,18 +194,21 @@ Status drawPack(const Arguments& arguments, RenderSettings settings) {
   FigureScene scene(std::move(*pack), std::move(*backend));
   if (const Status run = scene.runTo(tick); !run) return Error{arguments.pack + ": " + run.error()};
 
+  if (craterLookNamed(arguments.look) && std::size_t(arguments.crater) >= scene.state().craters.size())
+    return Error{fmt::format("{}: crater {} is asked for, there are {} at tick {}", arguments.pack, arguments.crater,
+                             scene.state().craters.size(), tick)};
+
   if (arguments.look == "columns") settings.shade = Shade::columns;
-  settings.sun_elevation_deg = arguments.sun_deg;
+  settings.sun_elevation_deg = sunOf(arguments, craterLookNamed(arguments.look) != nullptr);
   settings.columns = {-std::int32_t(arguments.range_mm) * 10, 0, std::int32_t(arguments.range_mm) * 10};
   settings.bodies = !arguments.no_bodies;
   Renderer renderer(scene.pack(), settings);
   if (arguments.highlight) renderer.highlightTiles(scene.activeTiles());
-  renderer.draw(scene.view(), cameraFor(arguments.look, scene.view(), settings));
+  renderer.draw(scene.view(), cameraFor(arguments, scene.view(), settings));
   fmt::print("tick {}, {} tiles simulated in it\n", tick, scene.activeTiles().size());
   if (const Status written = writePicture(renderer, arguments, name); !written) return written;
   if (arguments.frame_count == 0) return {};
-  return timeFrames(scene, renderer, cameraFor(arguments.look, scene.view(), settings), tick,
-                    int(arguments.frame_count));
+  return timeFrames(scene, renderer, cameraFor(arguments, scene.view(), settings), tick, int(arguments.frame_count));
 }
 
 Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
@@ -163,7 +218,9 @@ Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
   const auto context = openHeadlessContext();
   if (!context) return Error{context.error()};
   fmt::print("renderer {} ({})\n", (*context)->renderer(), (*context)->path());
+  if (!arguments.measure.empty()) return measureCraters(settings, arguments.json);
   if (!arguments.pack.empty()) return drawPack(arguments, settings);
+  if (arguments.only == "craters") return drawCraters(arguments, settings);
   for (const DisplacementFigure& figure : kDisplacementFigures)
     if (arguments.only.empty() || arguments.only == figure.number)
       if (const Status drawn = drawDisplacement(arguments, settings, figure); !drawn) return drawn;
@@ -181,15 +238,22 @@ int run(int argc, char** argv) {
       "spoor-figures",
       "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
   options.add("out", "DIR", "where pictures go", &arguments.folder);
-  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3", &arguments.only);
+  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind", &arguments.only);
   options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);
   options.add("ticks", "COUNT", "after how many ticks; -1: the pack's own", &arguments.tick, -1, 1 << 30);
-  options.add("look", "LOOK", "trails, follow, above, overview or columns", &arguments.look);
+  options.add(
+      "look", "LOOK",
+      "trails, follow, above, overview, columns, or of a crater: crater, crater-ground, crater-inside, crater-above",
+      &arguments.look);
+  options.add("crater", "ID", "which crater to look at", &arguments.crater, 0, kCratersLimit - 1);
+  options.add("measure", "WHAT", "craters: what a picture takes with and without them, by the cells of their hash",
+              &arguments.measure);
+  options.add("json", "FILE", "with --measure: where the numbers go", &arguments.json);
   options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
   options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
               &arguments.range_mm, 0, 100000);
-  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show", &arguments.sun_deg, 1.0,
-              89.0);
+  options.add("sun", "DEGREES", "above the horizon: the lower, the better shallow tracks show; 0: 21, of craters 34",
+              &arguments.sun_deg, 0.0, 89.0);
   options.add("frames", "COUNT", "with --pack: run and draw so many ticks more, and print what a picture takes",
               &arguments.frame_count, 0, 100000);
   options.addFlag("highlight", "mark the tiles that the last tick simulated", &arguments.highlight);
@@ -203,11 +267,17 @@ int run(int argc, char** argv) {
 
   const auto settings = pictureSettings(arguments.picture);
   if (!settings) return refuse(settings.error());
-  if (std::ranges::find(kLooks, arguments.look) == kLooks.end())
-    return refuse(fmt::format("--look \"{}\": want trails, follow, above, overview or columns", arguments.look));
+  if (std::ranges::find(kLooks, arguments.look) == kLooks.end() && !craterLookNamed(arguments.look))
+    return refuse(
+        fmt::format("--look \"{}\": want trails, follow, above, overview, columns, crater, crater-ground, "
+                    "crater-inside or crater-above",
+                    arguments.look));
+  if (!arguments.measure.empty() && arguments.measure != "craters")
+    return refuse(fmt::format("--measure \"{}\": want craters", arguments.measure));
+  if (!arguments.json.empty() && arguments.measure.empty()) return refuse("--json: goes with --measure");
   const auto known = [&](const DisplacementFigure& figure) { return arguments.only == figure.number; };
-  if (!arguments.only.empty() && std::ranges::none_of(kDisplacementFigures, known))
-    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3", arguments.only));
+  if (!arguments.only.empty() && arguments.only != "craters" && std::ranges::none_of(kDisplacementFigures, known))
+    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3, or craters", arguments.only));
   if (const Status done = drawAll(arguments, *settings); !done) {
     fmt::print(stderr, "spoor-figures: {}\n", done.error());
     return 1;

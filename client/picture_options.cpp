@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
+#include <string_view>
 
 #include "shaders/render/frame.h"
 
@@ -12,6 +15,16 @@ namespace spoor {
 namespace {
 
 constexpr int kSideLimit_px = 16384;
+
+struct NamedGround {
+  std::string_view name;
+  Ground ground;
+};
+constexpr NamedGround kGrounds[] = {{"snow", Ground::snow},
+                                    {"sand", Ground::sand},
+                                    {"mud", Ground::mud},
+                                    {"dirt", Ground::dirt},
+                                    {"grass", Ground::grass}};
 
 std::optional<int> sideOf(std::string_view text) {
   int value = 0;
@@ -25,7 +38,7 @@ std::optional<int> sideOf(std::string_view text) {
 
 void addPictureOptions(Options& options, PictureArguments& arguments) {
   options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
-  options.add("ground", "snow|sand|mud", "what the ground looks like", &arguments.ground);
+  options.add("ground", "snow|sand|mud|dirt|grass", "what the ground looks like", &arguments.ground);
   options.add("blur-normals", "PASSES", "of a 3 x 3 Gaussian over the ground's normals; -1: as the scene says",
               &arguments.blur_normals, -1, render::kBlurPassesLimit);
 }
@@ -40,9 +53,10 @@ Result<RenderSettings> pictureSettings(const PictureArguments& arguments) {
     return Error{fmt::format("--size \"{}\": want WIDTHxHEIGHT, each 1 .. {} pixels", size, kSideLimit_px)};
   settings.width_px = *width;
   settings.height_px = *height;
-  if (arguments.ground != "snow" && arguments.ground != "sand" && arguments.ground != "mud")
-    return Error{fmt::format("--ground \"{}\": want snow, sand or mud", arguments.ground)};
-  if (arguments.ground != "snow") settings.ground = arguments.ground == "sand" ? Ground::sand : Ground::mud;
+  const auto ground = std::ranges::find(kGrounds, std::string_view(arguments.ground), &NamedGround::name);
+  if (ground == std::end(kGrounds))
+    return Error{fmt::format("--ground \"{}\": want snow, sand, mud, dirt or grass", arguments.ground)};
+  settings.ground = ground->ground;
   settings.blur_passes = int(arguments.blur_normals);
   return settings;
 }

@@ -29,7 +29,10 @@ void Recording::finish(const WorldState& state) {
 }
 
 void Recording::save(const WorldState& state) {
-  Moment moment{state.tick, state.poses, state.previous_poses, {}};
+  const std::span<const Crater> craters = state.craters.records();
+  if (craters.size() > craters_.size())
+    craters_.insert(craters_.end(), craters.begin() + std::ptrdiff_t(craters_.size()), craters.end());
+  Moment moment{state.tick, state.poses, state.previous_poses, craters.size(), {}};
   for (const TileCoordinate at : changed_) {
     const Tile* tile = state.tiles.find(at);
     if (tile == nullptr) continue;
@@ -65,6 +68,7 @@ void Recording::replay(const BaseTerrain& base,
                        const std::function<bool(int, const WorldState&, std::span<const TileCoordinate>)>& show) const {
   if (moments_.empty()) return;
   WorldState state;
+  state.craters = CraterSet(base.pack());
   std::size_t applied = 0;
   for (int index = 0; index < wanted_; ++index) {
     const std::size_t wanted_moments =
@@ -75,6 +79,9 @@ void Recording::replay(const BaseTerrain& base,
       state.tick = moment.tick;
       state.poses = moment.poses;
       state.previous_poses = moment.previous_poses;
+      const std::size_t before = state.craters.size();
+      if (moment.crater_count > before)
+        state.craters.add(std::span(craters_).subspan(before, moment.crater_count - before));
       for (const auto& [at, saved] : moment.tiles) {
         Tile* tile = state.tiles.find(at);
         if (tile == nullptr) tile = &state.tiles.insert(makeTile(at, {&base, &state.craters}, moment.tick));

@@ -39,6 +39,7 @@ class Recording {
   struct Moment {
     std::int32_t tick = 0;
     std::vector<Pose> poses, previous_poses;
+    std::size_t crater_count = 0;                             // of craters_
     std::vector<std::pair<TileCoordinate, SavedTile>> tiles;  // in order; changed since the moment before
   };
   void save(const WorldState& state);
@@ -47,6 +48,7 @@ class Recording {
   int wanted_;
   std::int32_t spacing_ticks_ = 1;
   std::vector<Moment> moments_;
+  std::vector<Crater> craters_;       // of the newest state: those of every moment come first
   std::set<TileCoordinate> changed_;  // since the last moment
   std::size_t saved_tiles_ = 0;
 };

@@ -32,8 +32,20 @@ glm::dvec3 sunOf(const RenderSettings& settings) {
 }
 
 int groundCode(Ground ground) {
-  if (ground == Ground::sand) return render::kGroundSand;
-  return ground == Ground::mud ? render::kGroundMud : render::kGroundSnow;
+  switch (ground) {
+    case Ground::snow:
+      return render::kGroundSnow;
+    case Ground::sand:
+      return render::kGroundSand;
+    case Ground::mud:
+      return render::kGroundMud;
+    case Ground::dirt:
+      return render::kGroundDirt;
+    case Ground::grass:
+      return render::kGroundGrass;
+  }
+  SPOOR_ASSERT(false);
+  return render::kGroundSnow;
 }
 
 int shadeCode(Shade shade) {
@@ -114,6 +126,7 @@ void Renderer::resize(int width_px, int height_px) {
 
 void Renderer::forget() {
   terrain_.forget();
+  craters_.forget();
   changed_.clear();
 }
 
@@ -137,6 +150,7 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
   block.look = {float(settings_.detail), shadow_texel_m, float(settings_.sample_count),
                 highlight_.empty() ? 0.0f : 1.0f};
   block.origin = {frame.origin_cell, frame.origin_height_q, terrain_.settings().fine_patch_samples};
+  block.place = {pack_->cell_q, 0, 0, 0};
   block.world = {pack_->width_cells, pack_->height_cells, groundCode(settings_.ground), shadeCode(settings_.shade)};
   const auto windows = terrain_.windows();
   std::copy(windows.begin(), windows.end(), block.levels);
@@ -147,6 +161,8 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
 void Renderer::draw(const TerrainView& view, const Camera& camera, FrameTimes* times) {
   SPOOR_ASSERT(&view.base->pack() == pack_ && view.state->poses.size() == pack_->bodies.size());
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  if (!craters_.goesOn(view.state->craters)) forget();
+  craters_.update(view.state->craters, pack_->cell_q);
   std::ranges::sort(changed_);
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   const glm::ivec2 focus(glm::floor(camera.focus_m / cell_m_));
@@ -214,6 +230,7 @@ void Renderer::composePicture() {
   glDisable(GL_DEPTH_TEST);
   glBindTextureUnit(render::kColourUnit, colour_.name());
   glBindTextureUnit(render::kDepthUnit, depth_.name());
+  craters_.bind();
   glUseProgram(picture_program_.name());
   glBindVertexArray(no_layout_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);

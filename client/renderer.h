@@ -7,13 +7,14 @@
 #include "client/body_renderer.h"
 #include "client/camera.h"
 #include "client/column_renderer.h"
+#include "client/crater_colours.h"
 #include "client/highlight.h"
 #include "client/png_file.h"
 #include "client/terrain_levels.h"
 
 namespace spoor {
 
-enum class Ground { snow, sand, mud };
+enum class Ground { snow, sand, mud, dirt, grass };
 /// columns: every cell round the focus as a vertical bar, coloured by its height, and nothing else of the ground.
 enum class Shade { lit, normals, columns };
 
@@ -62,7 +63,7 @@ class Renderer {
   /// Draws at another size from now on.
   void resize(int width_px, int height_px);
 
-  /// Forgets the loaded ground: for a view of an earlier state or another one.
+  /// Forgets the loaded ground and craters: for a view of an earlier state or another one.
   void forget();
 
   Image readPicture() const;
@@ -86,6 +87,7 @@ class Renderer {
   TerrainLevels terrain_;
   BodyRenderer bodies_;
   ColumnRenderer columns_;
+  CraterColours craters_;
   Highlight highlight_;
   std::vector<TileCoordinate> changed_;
   std::vector<Patch> patches_;

@@ -101,6 +101,7 @@ TerrainLevels::TerrainLevels(const TerrainSettings& settings, double cell_m, con
 }
 
 void TerrainLevels::forget() {
+  crater_count_.reset();
   for (Level& level : levels_) {
     level.placed = false;
     for (Page& page : level.pages) page.loaded = false;
@@ -159,33 +160,38 @@ bool TerrainLevels::holds(int level, glm::ivec2 page) const {
 }
 
 void TerrainLevels::loadPages(const TerrainView& view) {
-  struct Job {
-    int level;
-    glm::ivec2 page;
-  };
-  std::vector<Job> jobs;
+  std::vector<LoadJob> jobs = missingPages();
+  stats.pages_loaded += std::int64_t(jobs.size());
+  addNewCraters(view, jobs);
+  for (std::size_t done = 0; done < jobs.size(); done += kBatchPages)
+    load(view, std::span(jobs).subspan(done, std::min(kBatchPages, jobs.size() - done)));
+}
+
+std::vector<TerrainLevels::LoadJob> TerrainLevels::missingPages() const {
+  std::vector<LoadJob> jobs;
   for (int level = 0; level < kLevelCount; ++level) {
     const Level& l = levels_[std::size_t(level)];
     for (int y = 0; y < l.page_count; ++y)
       for (int x = 0; x < l.page_count; ++x)
-        if (const glm::ivec2 page = l.first_page + glm::ivec2(x, y); !holds(level, page)) jobs.push_back({level, page});
+        if (const glm::ivec2 page = l.first_page + glm::ivec2(x, y); !holds(level, page))
+          jobs.push_back({level, page, {page * kPageSamples, glm::ivec2(kPageSamples)}});
   }
-  std::vector<std::int32_t> height_q(std::min(jobs.size(), kBatchPages) * kPageCells);
-  for (std::size_t done = 0; done < jobs.size(); done += kBatchPages) {
-    const std::size_t count = std::min(kBatchPages, jobs.size() - done);
-    const auto boxOf = [&](std::size_t i) {
-      return SampleBox{jobs[done + i].page * kPageSamples, glm::ivec2(kPageSamples)};
-    };
-    forEachInParallel(count, [&](std::size_t i) {
-      fillSamples(view, jobs[done + i].level, boxOf(i), std::span(height_q).subspan(i * kPageCells, kPageCells));
-    });
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto heights = std::span(height_q).subspan(i * kPageCells, kPageCells);
-      const auto [lowest, highest] = std::ranges::minmax_element(heights);
-      slot(jobs[done + i].level, jobs[done + i].page) = Page{jobs[done + i].page, true, {*lowest, *highest}};
-      uploadBox(jobs[done + i].level, boxOf(i), heights.data());
-      ++stats.pages_loaded;
-    }
+  return jobs;
+}
+
+void TerrainLevels::load(const TerrainView& view, std::span<const LoadJob> jobs) {
+  std::vector<std::int32_t> height_q(jobs.size() * kPageCells);
+  const auto heightsOf = [&](std::size_t i) {
+    const glm::ivec2 count = jobs[i].box.count;
+    return std::span(height_q).subspan(i * kPageCells, std::size_t(count.x) * std::size_t(count.y));
+  };
+  forEachInParallel(jobs.size(), [&](std::size_t i) { fillSamples(view, jobs[i].level, jobs[i].box, heightsOf(i)); });
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const auto [lowest, highest] = std::ranges::minmax_element(heightsOf(i));
+    HeightRange range{*lowest, *highest};
+    if (holds(jobs[i].level, jobs[i].page)) range.include(slot(jobs[i].level, jobs[i].page).range);
+    slot(jobs[i].level, jobs[i].page) = Page{jobs[i].page, true, range};
+    uploadBox(jobs[i].level, jobs[i].box, heightsOf(i).data());
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace spoor {
 struct TerrainStats {
   std::int64_t pages_loaded = 0;      // pages filled because the window moved
   std::int64_t tiles_uploaded = 0;    // changed tiles sent to level 0
-  std::int64_t samples_uploaded = 0;  // of all levels, by both
+  std::int64_t crater_samples = 0;    // of loaded pages, filled again because craters came
+  std::int64_t samples_uploaded = 0;  // of all levels, by all three
   std::int64_t relief_samples = 0;    // recomputed by relief.comp
   std::int64_t blurred_samples = 0;   // by blur_slopes.comp, of all passes
   std::int64_t patches_drawn = 0;
@@ -43,7 +45,8 @@ int finePatchSamples(std::int32_t width_cells, std::int32_t patches_per_row);
 using Patch = glm::ivec4;
 
 /// The ground's heights and relief on the graphics card: nested windows round a focus, each a torus of pages, so that
-/// moving the focus loads only pages that came into view, and a changed tile uploads only itself.
+/// moving the focus loads only pages that came into view, a changed tile uploads only itself, and a new crater the
+/// tiles that it meets.
 class TerrainLevels {
  public:
   /// @param sun  unit vector towards the sun, z > 0
@@ -53,6 +56,7 @@ class TerrainLevels {
   static bool windowsNest(int fine_pages, int coarse_pages);
 
   /// Brings the windows to the focus and their heights up to date. `changed`: tiles that differ from the last call's.
+  /// Craters that the last call's state did not have yet are seen here; the others must be the same.
   void updateHeights(const TerrainView& view, glm::ivec2 focus_cell, std::span<const TileCoordinate> changed);
   /// And then their relief, where heights changed.
   void updateRelief();
@@ -97,8 +101,19 @@ class TerrainLevels {
     std::vector<SampleBox> dirty;  // samples changed since the relief was made
   };
 
+  /// Samples of one page to be filled: all of it, or what craters changed.
+  struct LoadJob {
+    int level;
+    glm::ivec2 page;
+    SampleBox box;
+  };
+
   void moveWindow(int level, glm::ivec2 focus_cell);
   void loadPages(const TerrainView& view);
+  std::vector<LoadJob> missingPages() const;
+  void addNewCraters(const TerrainView& view, std::vector<LoadJob>& jobs);
+  void addCratersOfLevel(const ScenePack& pack, std::span<const Crater> craters, int level, std::vector<LoadJob>& jobs);
+  void load(const TerrainView& view, std::span<const LoadJob> jobs);
   void uploadTile(const TerrainView& view, TileCoordinate at);
   void uploadBox(int level, const SampleBox& box, const std::int32_t* height_q);
   void makeRelief(int level);
@@ -115,6 +130,7 @@ class TerrainLevels {
   double cell_m_;
   glm::dvec3 sun_;
   std::array<Level, render::kLevelCount> levels_;
+  std::optional<std::size_t> crater_count_;  // that the loaded pages hold
   GlTexture fine_height_, coarse_height_, fine_relief_, coarse_relief_;
   std::array<GlTexture, 2> blur_slopes_;  // between passes; level 0, where there are two or more
   GlBuffer relief_job_;

@@ -1,6 +1,9 @@
 #include "client/terrain_view.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
 
 #include "shaders/render/frame.h"
 #include "shared/base/assert.h"
@@ -17,26 +20,57 @@ std::int32_t mirrored(std::int32_t at, std::int32_t size) {
   return std::int32_t(rest < size ? rest : period - 1 - rest);
 }
 
-void fillBase(const BaseTerrain& base, glm::ivec2 first_cell, int stride, glm::ivec2 count,
-              std::span<std::int32_t> out) {
-  const glm::ivec2 last = first_cell + (count - 1) * stride;
-  const glm::ivec2 size(base.pack().width_cells, base.pack().height_cells);
-  if (first_cell.x >= 0 && first_cell.y >= 0 && last.x < size.x && last.y < size.y) {
-    base.fillArea(first_cell.x, first_cell.y, stride, count.x, count.y, out);
-    return;
+/// Samples in a row whose cells, mirrored into the world, follow each other in one direction.
+struct MirroredRun {
+  int first, count;  // of the samples
+  std::int32_t low;  // the lowest of their cells
+  bool backwards;
+};
+
+std::vector<MirroredRun> mirroredRuns(int first_cell, int stride, int count, std::int32_t size) {
+  std::vector<MirroredRun> runs;
+  for (int done = 0; done < count;) {
+    const std::int32_t cell = mirrored(first_cell + done * stride, size);
+    const std::int64_t period = std::int64_t(2) * size;
+    const bool backwards = ((first_cell + done * stride) % period + period) % period >= size;
+    const int length = std::min((backwards ? cell : size - 1 - cell) / stride + 1, count - done);
+    runs.push_back({done, length, backwards ? cell - (length - 1) * stride : cell, backwards});
+    done += length;
   }
-  for (int y = 0; y < count.y; ++y)
-    for (int x = 0; x < count.x; ++x)
-      out[std::size_t(y * count.x + x)] =
-          base.height(mirrored(first_cell.x + x * stride, size.x), mirrored(first_cell.y + y * stride, size.y));
+  return runs;
 }
 
-/// Mean of what a block of a tile's cells gained since the tile was dormant; cells outside the world do not count.
-std::int32_t meanGain(const Tile& tile, const ScenePack& pack, glm::ivec2 first, int side) {
+void fillGround(const DormantGround& ground, glm::ivec2 first_cell, int stride, glm::ivec2 count,
+                std::span<std::int32_t> out) {
+  const glm::ivec2 size(ground.base->pack().width_cells, ground.base->pack().height_cells);
+  const auto rows = mirroredRuns(first_cell.y, stride, count.y, size.y);
+  const auto columns = mirroredRuns(first_cell.x, stride, count.x, size.x);
+  if (rows.size() == 1 && columns.size() == 1 && !rows[0].backwards && !columns[0].backwards)
+    return ground.fillArea(columns[0].low, rows[0].low, stride, count.x, count.y, out);
+  std::vector<std::int32_t> part;
+  for (const MirroredRun& row : rows) {
+    for (const MirroredRun& column : columns) {
+      part.resize(std::size_t(row.count) * std::size_t(column.count));
+      ground.fillArea(column.low, row.low, stride, column.count, row.count, part);
+      for (int y = 0; y < row.count; ++y) {
+        const auto from = part.begin() + (row.backwards ? row.count - 1 - y : y) * column.count;
+        const auto to = out.begin() + (row.first + y) * count.x + column.first;
+        if (column.backwards)
+          std::reverse_copy(from, from + column.count, to);
+        else
+          std::copy_n(from, column.count, to);
+      }
+    }
+  }
+}
+
+/// Mean of what a block of a tile's cells gained over the base; cells outside the world do not count. Nothing where all
+/// lie outside.
+std::optional<std::int32_t> meanGain(const Tile& tile, const ScenePack& pack, glm::ivec2 first, int side) {
   const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize,
                           pack.height_cells - tile.at.y * rules::kTileSize);
   const glm::ivec2 end = glm::min(first + side, inside);
-  if (end.x <= first.x || end.y <= first.y) return 0;
+  if (end.x <= first.x || end.y <= first.y) return std::nullopt;
   std::int64_t sum = 0;
   for (int y = first.y; y < end.y; ++y) {
     for (int x = first.x; x < end.x; ++x) {
@@ -47,13 +81,27 @@ std::int32_t meanGain(const Tile& tile, const ScenePack& pack, glm::ivec2 first,
   return std::int32_t(sum / ((end.x - first.x) * (end.y - first.y)));
 }
 
-/// Copies a live tile's cells over the base's; what lies outside the world keeps mirroring.
+/// Copies a live tile's cells over the dormant ones; what lies outside the world keeps mirroring.
 void copyTile(const Tile& tile, const ScenePack& pack, std::span<std::int32_t> out, int row_samples) {
   const glm::ivec2 inside(pack.width_cells - tile.at.x * rules::kTileSize,
                           pack.height_cells - tile.at.y * rules::kTileSize);
   const glm::ivec2 end = glm::min(inside, glm::ivec2(rules::kTileSize));
   for (int y = 0; y < end.y; ++y)
     std::copy_n(tile.height().begin() + y * rules::kTileSize, end.x, out.begin() + y * row_samples);
+}
+
+/// The samples of a live tile: the base, without craters, and what its cells gained, craters and all.
+/// @param first  sample; `side` samples of `stride` cells make the tile
+void fillLiveTile(const Tile& tile, const BaseTerrain& base, glm::ivec2 first, int side, std::span<std::int32_t> out,
+                  int row_samples) {
+  const int stride = rules::kTileSize / side;
+  std::array<std::int32_t, rules::kTileCells> plain;
+  const std::span<std::int32_t> samples = std::span(plain).first(std::size_t(side * side));
+  fillGround({&base, nullptr}, first * stride + stride / 2, stride, glm::ivec2(side), samples);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      if (const auto gain = meanGain(tile, base.pack(), {x * stride, y * stride}, stride))
+        out[std::size_t(y * row_samples + x)] = samples[std::size_t(y * side + x)] + *gain;
 }
 
 }  // namespace
@@ -63,7 +111,7 @@ void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::
   const int shift = level * render::kLevelShift;
   const int stride = 1 << shift;
   const int middle = level == 0 ? 0 : stride / 2;
-  fillBase(*view.base, box.first * stride + middle, stride, box.count, height_q);
+  fillGround({view.base, &view.state->craters}, box.first * stride + middle, stride, box.count, height_q);
   if (stride > rules::kTileSize) return;
 
   const int side = rules::kTileSize >> shift;  // samples along a tile
@@ -74,13 +122,10 @@ void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::
       const Tile* tile = view.state->tiles.find({first.x / side, first.y / side});
       if (tile == nullptr) continue;
       const auto out = height_q.subspan(std::size_t(y * box.count.x + x));
-      if (level == 0) {
+      if (level == 0)
         copyTile(*tile, view.base->pack(), out, box.count.x);
-        continue;
-      }
-      for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i)
-          out[std::size_t(j * box.count.x + i)] += meanGain(*tile, view.base->pack(), {i * stride, j * stride}, stride);
+      else
+        fillLiveTile(*tile, *view.base, first, side, out, box.count.x);
     }
   }
 }

@@ -8,7 +8,8 @@
 
 namespace spoor {
 
-/// The ground as a renderer sees it: dormant tiles are the base's heights, live ones the state's. Borrows both.
+/// The ground as a renderer sees it: dormant tiles are the base with the state's craters, live ones the state's
+/// heights. Borrows both.
 struct TerrainView {
   const BaseTerrain* base = nullptr;
   const WorldState* state = nullptr;
@@ -21,9 +22,10 @@ struct SampleBox {
 };
 
 /// Heights of a box of samples, row-major [count.x * count.y], 0.1 mm.
-/// Level 0 samples are cells. A sample of another level is the base at the middle of its cells plus the mean of what
-/// live cells gained or lost; of levels coarser than a tile it is the base alone.
-/// The ground beyond the world's border mirrors the base within, so that pictures reach the horizon.
+/// Level 0 samples are cells. A sample of another level is dormant ground at the middle of its cells; in a live tile it
+/// is the base there plus the mean of what its cells gained or lost, by craters too. Of levels coarser than a tile all
+/// is dormant ground.
+/// The ground beyond the world's border mirrors the dormant ground within, so that pictures reach the horizon.
 /// `box` is made of whole tiles where a tile has a sample at all. Thread-safe where nobody changes the state.
 void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::span<std::int32_t> height_q);
 

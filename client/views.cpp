@@ -118,6 +118,21 @@ void keepAboveGround(const TerrainView& view, glm::dvec3& eye_m, double clearanc
   eye_m.z = std::max(eye_m.z, groundHeight(view, {eye_m.x, eye_m.y}) + clearance_m);
 }
 
+/// Widens a circle about a crater so that it holds the newest of the others that meet it, too.
+void takeInNeighbour(const TerrainView& view, std::uint32_t id, glm::dvec2& centre_m, double& outer_m) {
+  const CraterSet& craters = view.state->craters;
+  const std::vector<std::uint32_t> ids = craters.meeting(craterBox(view.base->pack(), craters.records()[id]));
+  const auto other = std::ranges::find_if(ids.rbegin(), ids.rend(), [&](std::uint32_t i) { return i != id; });
+  if (other == ids.rend()) return;
+  const Crater& crater = craters.records()[*other];
+  const glm::dvec2 other_m = glm::dvec2(crater.x_q, crater.y_q) / kUnits;
+  const double other_outer_m = double(crater.outerRadius()) / kUnits, apart_m = glm::distance(centre_m, other_m);
+  if (apart_m >= outer_m + other_outer_m) return;  // only their squares meet
+  const double both_m = std::max({(apart_m + outer_m + other_outer_m) / 2.0, outer_m, other_outer_m});
+  if (apart_m > 0.0) centre_m += (other_m - centre_m) / apart_m * glm::clamp(both_m - outer_m, 0.0, apart_m);
+  outer_m = both_m;
+}
+
 }  // namespace
 
 double groundHeight(const TerrainView& view, const glm::dvec2& place_m) {
@@ -128,7 +143,7 @@ double groundHeight(const TerrainView& view, const glm::dvec2& place_m) {
   const auto heightOf = [&](double cell_x, double cell_y) {
     const auto x = std::int32_t(std::min(cell_x, size.x - 1.0)), y = std::int32_t(std::min(cell_y, size.y - 1.0));
     const Tile* tile = view.state->tiles.find({x / rules::kTileSize, y / rules::kTileSize});
-    if (tile == nullptr) return double(view.base->height(x, y));
+    if (tile == nullptr) return double(DormantGround{view.base, &view.state->craters}.height(x, y));
     return double(tile->height()[std::size_t(y % rules::kTileSize * rules::kTileSize + x % rules::kTileSize)]);
   };
   const glm::dvec2 part = at - low;
@@ -242,6 +257,44 @@ Camera overviewView(const TerrainView& view, double aspect) {
   Camera camera = cameraLookingAt(eye_m, {middle_m + glm::dvec2(0.0, -0.06 * size_m), ground_m});
   camera.field_of_view_deg = kView_deg;
   camera.focus_m = middle_m;
+  return camera;
+}
+
+Camera craterView(const TerrainView& view, std::uint32_t id, CraterLook look, double sun_azimuth_deg, double aspect) {
+  SPOOR_ASSERT(id < view.state->craters.size());
+  constexpr double kEye_m = 1.7;  // of a man, over the ground
+  const Crater& crater = view.state->craters.records()[id];
+  glm::dvec2 centre_m = glm::dvec2(crater.x_q, crater.y_q) / kUnits;
+  double outer_m = double(crater.outerRadius()) / kUnits;
+  const double crest_m = crater.crest_radius_q / kUnits;
+  if (look == CraterLook::at_once || look == CraterLook::above) takeInNeighbour(view, id, centre_m, outer_m);
+  // Inside, towards the wall that is lit.
+  const double azimuth = glm::radians(sun_azimuth_deg + (look == CraterLook::inside ? 150.0 : -75.0));
+  const glm::dvec2 ahead(std::cos(azimuth), std::sin(azimuth));
+  const auto onGround = [&](const glm::dvec2& place_m, double over_m) {
+    return glm::dvec3(place_m, groundHeight(view, place_m) + over_m);
+  };
+  const glm::dvec3 edge_m = onGround(centre_m - ahead * outer_m, 0.0);  // about as high as before the explosion
+  if (look == CraterLook::above) {
+    Camera camera = cameraLookingAt({centre_m, edge_m.z + 500.0}, {centre_m, 0.0});
+    camera.orthographic_height_m = 2.6 * std::max(outer_m, outer_m / aspect);
+    return camera;
+  }
+  Camera camera;
+  if (look == CraterLook::ground) {
+    camera = cameraLookingAt(onGround(centre_m - ahead * (1.2 * outer_m + 2.5), kEye_m), {centre_m, edge_m.z});
+  } else if (look == CraterLook::inside) {
+    const glm::dvec3 eye_m = onGround(centre_m - ahead * 0.30 * crest_m, kEye_m);
+    const glm::dvec3 rim_m = onGround(centre_m + ahead * crest_m, 0.0);
+    camera = cameraLookingAt(eye_m, {glm::dvec2(rim_m), std::min(rim_m.z, eye_m.z)});
+    camera.field_of_view_deg = 75.0;
+  } else {
+    glm::dvec3 eye_m(centre_m - ahead * 2.1 * outer_m, edge_m.z + 1.15 * outer_m);
+    keepAboveGround(view, eye_m, 0.3 * outer_m);
+    camera = cameraLookingAt(eye_m, {centre_m, edge_m.z - 0.1 * outer_m});
+    camera.field_of_view_deg = 45.0;
+  }
+  camera.focus_m = centre_m;
   return camera;
 }
 

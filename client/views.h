@@ -27,6 +27,14 @@ Camera columnsView(const TerrainView& view);
 /// The whole world from the air, from the south.
 Camera overviewView(const TerrainView& view, double aspect);
 
+/// How to look at a crater. at_once: down on it from beside, as large as it is; ground: by a man who stands before it;
+/// inside: by one who stands in its cavity; above: straight down.
+enum class CraterLook { at_once, ground, inside, above };
+
+/// A crater of the state, lit from the side.
+/// @param id  of the crater, below the state's count (asserted)
+Camera craterView(const TerrainView& view, std::uint32_t id, CraterLook look, double sun_azimuth_deg, double aspect);
+
 /// Bodies worth following: the first of each path.
 std::vector<int> leadingBodies(const ScenePack& pack);
 

@@ -21,7 +21,7 @@ MAY_INCLUDE = {
     "shaders/host": ["shaders/rules", "shared", "shaders/sim", "shaders/host"],
     "protocol": ["shaders/rules", "shared", "protocol"],
     "server": ["shaders/rules", "shared", "protocol", "shaders/host", "server"],
-    "shaders/render": ["shaders/rules", "shaders/render"],
+    "shaders/render": ["shaders/rules", "shaders/sim", "shaders/render"],
     "client": ["shaders/rules", "shaders/render", "shared", "protocol", "shaders/host", "client"],
     "tests/bench": ["shaders/rules", "shared", "shaders/host", "tests/bench"],
 }

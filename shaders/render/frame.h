@@ -39,6 +39,8 @@ RENDER_CONST kShadeColumns = 2;
 RENDER_CONST kGroundSnow = 0;
 RENDER_CONST kGroundSand = 1;
 RENDER_CONST kGroundMud = 2;
+RENDER_CONST kGroundDirt = 3;
+RENDER_CONST kGroundGrass = 4;
 
 // Binding points.
 RENDER_CONST kFrameBinding = 0;       // uniform block
@@ -52,6 +54,8 @@ RENDER_CONST kBodyShadowUnit = 4;
 RENDER_CONST kColourUnit = 5;
 RENDER_CONST kDepthUnit = 6;
 RENDER_CONST kHighlightUnit = 7;
+RENDER_CONST kCraterBinding = 0;  // storage blocks: the first of
+RENDER_CONST kCraterBlocks = 5;
 RENDER_CONST kReliefImage = 0;  // image units
 RENDER_CONST kBlurFromImage = 1;
 RENDER_CONST kBlurToImage = 2;
@@ -75,6 +79,7 @@ struct Frame {
   vec4 look;     // strength of the fine detail, 0 .. 1; the shadow map's texel [m]; samples a pixel; strength of marks
   ivec4 origin;  // cell x, y; height, 0.1 mm; samples along a patch of level 0
   ivec4 world;   // cells x, y; kGround*; kShade*
+  ivec4 place;   // side of a cell, 0.1 mm
   LevelWindow levels[kLevelCount];
 };
 
@@ -95,7 +100,7 @@ struct ColumnArea {
 #ifdef __cplusplus
 static_assert(sizeof(ColumnArea) == 32);
 static_assert(sizeof(LevelWindow) == 32);
-static_assert(sizeof(Frame) == 2 * 64 + 9 * 16 + kLevelCount * 32);
+static_assert(sizeof(Frame) == 2 * 64 + 10 * 16 + kLevelCount * 32);
 static_assert(sizeof(ReliefJob) == 64);
 // A slope looks one sample beyond its own, each pass one more, and so does the filter that reads the map.
 static_assert(kMorphRimSamples > kShadowSteps && kMorphRimSamples > kBlurPassesLimit + 2);

@@ -1,13 +1,18 @@
-// How the ground looks at a place: snow, sand or mud under a low sun.
+// How the ground looks at a place: snow, sand, mud, dirt or grass, and craters in it, under a low sun.
 #include "relief.glsl"
 #include "light.glsl"
 #include "body_shadow.glsl"
 #include "detail.glsl"
+#include "map_place.glsl"
+#include "ground_cover.glsl"
+#include "crater_look.glsl"
 #include "highlight.glsl"
 
 vec3 groundAlbedo() {
   if (frame.world.z == kGroundSand) return vec3(0.60, 0.43, 0.25);
   if (frame.world.z == kGroundMud) return vec3(0.115, 0.080, 0.052);
+  if (frame.world.z == kGroundDirt) return vec3(0.350, 0.175, 0.097);
+  if (frame.world.z == kGroundGrass) return vec3(0.090, 0.140, 0.035);
   return vec3(0.86, 0.88, 0.91);
 }
 
@@ -22,6 +27,22 @@ vec2 footprintAt(vec3 rel, vec2 rel_cells) {
   return away_m * per_pixel * vec2(1.0, 1.0 / facing);
 }
 
+/// What the map's places look like close by, and the craters in them.
+/// @param bounced  the albedo of the ground about the place
+void addDetail(vec2 rel, vec2 footprint_cells, inout vec3 albedo, inout vec3 bounced, inout vec2 slope,
+               inout float sky) {
+  MapPlace place = mapPlace(rel);
+  vec2 footprint_m = footprint_cells * frame.scale.x;
+  GroundCover cover = GroundCover(albedo, vec2(0.0));
+  if (frame.world.z == kGroundDirt) cover = dirtAt(place.at, footprint_m.y);
+  if (frame.world.z == kGroundGrass) cover = grassAt(place.at, footprint_m.y);
+  CraterLook look = craterLookAt(place.at, footprint_m);
+  albedo = cover.albedo * (1.0 - look.cover) + look.albedo;
+  bounced = bounced * (1.0 - look.cover) + look.albedo;
+  sky = mix(sky, 0.12 + 0.88 * sqrt(sky), look.cover);  // a cavity's walls light each other
+  slope += place.facing * frame.look.x * (cover.slope * (1.0 - look.bare) + look.slope);
+}
+
 /// Colour that the ground sends to the eye, with fog; kShadeNormals: its normal.
 vec3 shadedGround(vec3 rel, vec2 rel_cells, vec2 footprint) {
   // Between the shorter and the longer side: blurring by the longer would wipe out tracks at grazing angles.
@@ -30,15 +51,18 @@ vec3 shadedGround(vec3 rel, vec2 rel_cells, vec2 footprint) {
   if (frame.world.w == kShadeNormals) return smooth_normal * 0.5 + 0.5;
 
   vec3 grain = grainAt(rel_cells, footprint.y);
-  vec3 normal = normalize(vec3(-relief.gradient - grain.xy, 1.0));
-  vec3 albedo = groundAlbedo() * (1.0 + grain.z);
+  vec2 slope = relief.gradient + grain.xy;
+  float sky = relief.sky * relief.sky;
+  vec3 bounced = groundAlbedo();
+  vec3 albedo = bounced * (1.0 + grain.z);
+  if (crater_head.mask >= 0 || frame.world.z >= kGroundDirt) addDetail(rel.xy, footprint, albedo, bounced, slope, sky);
+  vec3 normal = normalize(vec3(-slope, 1.0));
   vec2 cell = rel_cells + vec2(frame.origin.xy);
   bool outside = any(lessThan(cell, vec2(-0.5))) || any(greaterThan(cell, vec2(frame.world.xy) - 0.5));
   if (outside) albedo = mix(albedo, vec3(dot(albedo, vec3(0.3333))), 0.6) * 0.85;
 
   float lit = max(dot(normal, frame.sun.xyz), 0.0) * relief.sun * bodyShadow(rel, smooth_normal, 0.01);
-  float sky = relief.sky * relief.sky;
-  vec3 colour = albedo * (kSunLight * lit + skyLight(smooth_normal, groundAlbedo()) * sky);
+  vec3 colour = albedo * (kSunLight * lit + skyLight(smooth_normal, bounced) * sky);
   return toScreen(withFog(colour, rel));
 }
 

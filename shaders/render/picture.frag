@@ -37,7 +37,17 @@ void main() {
     nearest = max(nearest, depth);
     furthest = min(furthest, depth);
   }
-  if (ground_count > 0.0 && (frame.eye.w > 0.0 || nearest < 1.15 * furthest)) {
+  if (ground_count > 0.0 && crater_head.mask >= 0 && nearest > 1.01 * furthest && nearest < 1.15 * furthest) {
+    // Between a rim and what lies behind it there is nothing to be shaded: both, by how many samples show them.
+    float middle = 0.5 * (nearest + furthest);
+    vec2 near = vec2(0.0), far = vec2(0.0);  // sum of depths, count
+    for (int i = 0; i < sample_count; ++i) {
+      if (depths[i] > middle) near += vec2(depths[i], 1.0);
+      if (depths[i] > 0.0 && depths[i] <= middle) far += vec2(depths[i], 1.0);
+    }
+    sum += vec4(groundColour(placeAt(screen, near.x / near.y)), 1.0) * near.y;
+    sum += vec4(groundColour(placeAt(screen, far.x / far.y)), 1.0) * far.y;
+  } else if (ground_count > 0.0 && (frame.eye.w > 0.0 || nearest < 1.15 * furthest)) {
     sum += vec4(groundColour(placeAt(screen, depth_sum / ground_count)), 1.0) * ground_count;
   } else if (ground_count > 0.0) {
     for (int i = 0; i < sample_count; ++i)

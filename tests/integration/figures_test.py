@@ -68,9 +68,22 @@ def a_pack_is_drawn_before_and_after_its_session(folder):
     assert rows_of(folder / "at_0.png") != rows_of(folder / "at_30.png"), "the box left no track"
 
 
+def a_crater_of_each_kind_is_drawn(folder):
+    done = figures(f"--out={folder}", "--only=craters", "--size=96x54", "--ground=grass")
+    assert done.returncode == 0, done.stderr
+    files = sorted(file.name for file in folder.iterdir())
+    kinds = ("above", "deep", "double", "ground", "inside", "shallow", "single")
+    assert files == [f"crater_{kind}_grass.png" for kind in kinds], files
+    for name in files:
+        assert colour_count(folder / name, (96, 54)) > 200, f"{name} is blank"
+
+
 def what_cannot_be_drawn_is_said_in_one_line(folder):
     for options, code, text in (
-        (["--only=5.4"], 2, "5.1, 5.2 or 5.3"),
+        (["--only=5.4"], 2, "5.1, 5.2 or 5.3, or craters"),
+        (["--measure=tiles"], 2, "want craters"),
+        (["--json=numbers.json"], 2, "--measure"),
+        ([f"--pack={SOURCE / 'tests/golden/box.pack'}", "--ticks=0", "--look=crater"], 1, "crater 0 is asked for, there are 0 at tick 0"),
         (["--look=inside"], 2, "--look"),
         (["--ground=lava"], 2, "--ground"),
         (["--blur-normals=17"], 2, "blur-normals"),
@@ -81,7 +94,7 @@ def what_cannot_be_drawn_is_said_in_one_line(folder):
         assert done.returncode == code and text in done.stderr and done.stderr.count("\n") == 1, (options, done.returncode, done.stderr)
 
 
-for case in (the_pressed_box_is_drawn_with_each_metric, a_pack_is_drawn_before_and_after_its_session, what_cannot_be_drawn_is_said_in_one_line):
+for case in (the_pressed_box_is_drawn_with_each_metric, a_pack_is_drawn_before_and_after_its_session, a_crater_of_each_kind_is_drawn, what_cannot_be_drawn_is_said_in_one_line):
     with tempfile.TemporaryDirectory() as scratch:
         case(pathlib.Path(scratch))
     print(f"ok {case.__name__}")
