@@ -83,6 +83,9 @@ std::string tableOf(const SessionReport& report) {
   if (figures.craters > 0 || figures.craters_refused > 0 || asked > 0)
     row("craters", fmt::format("{}; {} left out; clients asked for {}, {} refused", figures.craters,
                                figures.craters_refused, asked, refused));
+  if (figures.waiting_ticks > 0)
+    row("too much", fmt::format("in {} ticks more than {} tiles were awake, and some waited", figures.waiting_ticks,
+                                kTickTilesLimit));
   if (figures.too_fast_ticks > 0)
     row("too fast", fmt::format("in {} ticks a body outran its sub-steps", figures.too_fast_ticks));
   if (figures.kept_back > 0)

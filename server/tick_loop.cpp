@@ -50,6 +50,7 @@ void note(LoopFigures& figures, const TickResult& result, std::int32_t tick, dou
   keep(figures.tick_ms, tick_ms);
   for (int stage = 0; stage < kStageCount; ++stage) keep(figures.stage_ms[stage], result.effect.stage_ms[stage]);
   keep(figures.active_cells, double(result.effect.active_cells));
+  figures.waiting_ticks += result.waiting_tiles > 0 ? 1 : 0;
   figures.too_fast_ticks += result.too_fast ? 1 : 0;
   figures.unbalanced_ticks += result.ledger.error() != 0 ? 1 : 0;
   figures.kept_back += result.effect.kept_back;
@@ -61,6 +62,9 @@ void sayFirsts(const LoopFigures& figures, const TickResult& result, std::int32_
   if (result.too_fast && figures.too_fast_ticks == 0)
     say(fmt::format("tick {}: a body moves farther than one cell in each of {} sub-steps; its trail may have gaps",
                     tick, kSubStepLimit));
+  if (result.waiting_tiles > 0 && figures.waiting_ticks == 0)
+    say(fmt::format("tick {}: more than {} tiles are awake; {} of them wait for later ticks", tick, kTickTilesLimit,
+                    result.waiting_tiles));
   if (result.effect.kept_back > 0 && figures.kept_back == 0)
     say(
         fmt::format("tick {}: {} units of soil (0.1 mm of a cell) found no room, or did not get out yet, and stay "

@@ -29,6 +29,7 @@ struct LoopFigures {
   std::vector<double> active_cells;
   std::int32_t late_ticks = 0;  // that began after their time
   std::int32_t too_fast_ticks = 0;
+  std::int32_t waiting_ticks = 0;     // in which more tiles were awake than a tick may simulate
   std::int32_t unbalanced_ticks = 0;  // whose ledger error was not 0
   std::int64_t kept_back = 0;         // TickEffect::kept_back of all ticks
   std::int64_t craters = 0;           // that came

@@ -44,8 +44,8 @@ Crater craterAt(double x_m, double y_m, double crest_m) {
   return crater;
 }
 
-struct CraterWorld : World {
-  explicit CraterWorld(ScenePack made, std::span<const Crater> craters = {}) : World(std::move(made)) {
+struct CraterWorld : ViewedWorld {
+  explicit CraterWorld(ScenePack made, std::span<const Crater> craters = {}) : ViewedWorld(std::move(made)) {
     state.craters = CraterSet(pack);
     add(craters);
   }

@@ -29,7 +29,7 @@ glm::ivec3 pixelAt(const Image& image, int x, int y) {
 
 /// Looks straight down so that a cell is ten pixels wide; the world's south-west corner is at (40, 30) from the
 /// picture's.
-Image columnsFromAbove(const World& world, const ColumnSettings& columns) {
+Image columnsFromAbove(const ViewedWorld& world, const ColumnSettings& columns) {
   RenderSettings settings = smallSettings();
   settings.width_px = 480;
   settings.height_px = 360;
@@ -51,7 +51,7 @@ void expectNear(const glm::ivec3& is, const glm::vec3& wanted, const char* what)
 }
 
 TEST_F(Render, ColumnsShowTheColourOfTheirHeight) {
-  World world(smallFlatPack());
+  ViewedWorld world(smallFlatPack());
   addLiveTile(world.state, world.base, {0, 0}, 0);
   const auto height = [&](int x, int y) -> std::int32_t& {
     return world.state.tiles.find({0, 0})->height()[std::size_t(y * rules::kTileSize + x)];
@@ -74,7 +74,7 @@ TEST_F(Render, ColumnsShowTheColourOfTheirHeight) {
 }
 
 TEST_F(Render, ColumnsWithoutARangeTakeTheirAreas) {
-  World world(smallFlatPack());
+  ViewedWorld world(smallFlatPack());
   addLiveTile(world.state, world.base, {0, 0}, 0);
   world.state.tiles.find({0, 0})->height()[5] = 300;
   const Image image = columnsFromAbove(world, {});
@@ -83,7 +83,7 @@ TEST_F(Render, ColumnsWithoutARangeTakeTheirAreas) {
 }
 
 TEST(ColumnCells, LieInTheWorldRoundTheFocus) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   addLiveTile(world.state, world.base, {23, 21}, 0);
   world.state.tiles.find({23, 21})->height()[3 * 64 + 7] = 77777;
   const ColumnCells inside = columnCells(world.view(), {700, 600});
@@ -97,7 +97,7 @@ TEST(ColumnCells, LieInTheWorldRoundTheFocus) {
 }
 
 TEST_F(Render, MarksLieOnTheirTilesAndNowhereElse) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   world.state.poses.assign(world.pack.bodies.size(), Pose{});
   RenderSettings settings = smallSettings();
   settings.height_px = settings.width_px;

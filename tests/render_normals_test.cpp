@@ -25,8 +25,8 @@ TerrainLevels levelsWith(int blur_passes) {
   return TerrainLevels({4, 6, render::kFinePatchSamples, blur_passes}, kCell_m, sun);
 }
 
-World ruttedWorld() {
-  World world(noisePack());
+ViewedWorld ruttedWorld() {
+  ViewedWorld world(noisePack());
   addLiveTile(world.state, world.base, {7, 6}, 2000);
   addLiveTile(world.state, world.base, {6, 5}, -700);
   return world;
@@ -71,7 +71,7 @@ std::size_t differences(const std::vector<glm::vec4>& a, const std::vector<glm::
 }
 
 TEST_F(Render, BlurPassesEqualAPlainConvolution) {
-  const World world = ruttedWorld();
+  const ViewedWorld world = ruttedWorld();
   std::vector<float> steepest;
   for (const int passes : {0, 1, 2, 3, 16}) {
     TerrainLevels levels = levelsWith(passes);
@@ -92,7 +92,7 @@ TEST_F(Render, BlurPassesEqualAPlainConvolution) {
 
 TEST_F(Render, ReliefOfAChangedTileIsThatOfAFullRebuild) {
   for (const int passes : {0, 1, 2, 16}) {
-    World world = ruttedWorld();
+    ViewedWorld world = ruttedWorld();
     TerrainLevels levels = levelsWith(passes);
     update(levels, world.view(), kFocus, {});
     const auto before = levels.fineRelief();
@@ -118,7 +118,7 @@ TEST_F(Render, ReliefOfAChangedTileIsThatOfAFullRebuild) {
 }
 
 TEST_F(Render, ReliefAfterTheWindowMovedIsThatOfAFreshOne) {
-  const World world = ruttedWorld();
+  const ViewedWorld world = ruttedWorld();
   TerrainLevels levels = levelsWith(16);
   update(levels, world.view(), kFocus + 64, {});
   update(levels, world.view(), kFocus + glm::ivec2(0, -64), {});
@@ -130,7 +130,7 @@ TEST_F(Render, ReliefAfterTheWindowMovedIsThatOfAFreshOne) {
 }
 
 TEST_F(Render, PackAndSettingsSayHowOftenNormalsAreBlurred) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   world.pack.normal_blur_passes = 3;
   addLiveTile(world.state, world.base, {7, 6}, 2000);
   const auto picture = [&](int passes) {
@@ -156,7 +156,7 @@ TEST(FinePatches, ARowHoldsAsManyAsAskedForWhereTessellationAllows) {
 }
 
 TEST_F(Render, SmallPatchesCoverTheGroundWithoutCracks) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   addLiveTile(world.state, world.base, {7, 6}, 2000);
   for (const auto& [patches_per_row, side] : {std::pair{93, 16}, std::pair{187, 8}, std::pair{4096, 4}}) {
     RenderSettings settings = smallSettings();

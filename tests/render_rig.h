@@ -79,8 +79,8 @@ inline void addLiveTile(WorldState& state, const BaseTerrain& base, TileCoordina
 }
 
 /// A pack with what a view needs; nothing moves once it is made.
-struct World {
-  explicit World(ScenePack made) : pack(std::move(made)), base(pack) {
+struct ViewedWorld {
+  explicit ViewedWorld(ScenePack made) : pack(std::move(made)), base(pack) {
     for (std::size_t i = 0; i < pack.bodies.size(); ++i) {
       Pose pose;
       pose.x_q = 240000 + int(i) * 30000;
@@ -106,7 +106,7 @@ inline RenderSettings smallSettings() {
   return settings;
 }
 
-inline Camera fromAbove(const World& world, glm::dvec2 place_m, double height_m) {
+inline Camera fromAbove(const ViewedWorld& world, glm::dvec2 place_m, double height_m) {
   Camera camera = cameraLookingAt({place_m, groundHeight(world.view(), place_m) + height_m}, {place_m, 0.0});
   camera.focus_m = place_m;
   return camera;

@@ -12,7 +12,7 @@ namespace {
 using namespace test;
 
 TEST_F(Render, GroundHasNoCracksFromAbove) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   addLiveTile(world.state, world.base, {7, 6}, 2000);
   addLiveTile(world.state, world.base, {8, 6}, -3000);
   Renderer renderer(world.pack, smallSettings());
@@ -30,7 +30,7 @@ TEST_F(Render, GroundHasNoCracksFromAbove) {
 }
 
 TEST_F(Render, NormalsOfAPlaneAreTheSameEverywhere) {
-  World world(planePack());
+  ViewedWorld world(planePack());
   RenderSettings settings = smallSettings();
   settings.shade = Shade::normals;
   Renderer renderer(world.pack, settings);
@@ -50,7 +50,7 @@ TEST_F(Render, NormalsOfAPlaneAreTheSameEverywhere) {
 }
 
 TEST_F(Render, PictureDependsOnStateAndCameraAlone) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   addLiveTile(world.state, world.base, {7, 6}, 2000);
   const Camera camera = trailsView(world.view(), 135.0);
   Renderer first(world.pack, smallSettings());
@@ -67,7 +67,7 @@ TEST_F(Render, PictureDependsOnStateAndCameraAlone) {
 }
 
 TEST_F(Render, ChangedTileIsUploadedAloneAndChangesThePictureThereOnly) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   const TileCoordinate at{9, 7};
   addLiveTile(world.state, world.base, at, 0);
   world.state.poses.assign(world.pack.bodies.size(), Pose{});
@@ -111,7 +111,7 @@ TEST_F(Render, FarFromTheWorldsCornerThePictureIsTheSame) {
   // East of its samples this ground is the same at every x: cells of 5 cm, and 160 km between the two cameras.
   ScenePack pack = planePack();
   pack.width_cells = 1 << 22;
-  World world(pack);
+  ViewedWorld world(pack);
   addLiveTile(world.state, world.base, {50, 8}, 2000);
   const int shift_tiles = 256 * 200;
   addLiveTile(world.state, world.base, {50 + shift_tiles, 8}, 2000);
@@ -143,7 +143,7 @@ TEST(MeshSurface, SharpEdgesStaySharpAndFlatOnesAreShared) {
 }
 
 TEST(Recording, ReplaysTheTilesOfEachMomentHoweverLongTheSession) {
-  World world(noisePack());
+  ViewedWorld world(noisePack());
   const TileCoordinate at{3, 4};
   addLiveTile(world.state, world.base, at, 0);
   Recording recording(5);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/scenes.h"
 
@@ -204,6 +205,48 @@ TEST_P(Sleep, SoilThatABodyHeldUpFallsOnceItIsGone) {
   ASSERT_GE(ticksToSleep(simulation, 300), 0);
   EXPECT_GT(heightOf(simulation.state(), 30, 30), -6000);
   EXPECT_EQ(steepestExcess(world.pack, simulation.state().tiles), 0);
+}
+
+/// Ticks of at most `tile_limit` tiles: a needle pricks a column, is taken away, and all comes to rest.
+struct CrowdedRun {
+  WorldState state;
+  std::size_t waiting_ticks = 0;
+  bool asleep = false;
+};
+
+void runCrowded(const World& world, Backend& backend, std::size_t tile_limit, CrowdedRun& run) {
+  backend.forget();
+  run.state = initialState(world.id, world.base);
+  const std::vector<std::int32_t> reach = bodyReaches(world.pack);
+  std::vector<Pose> poses = run.state.poses;
+  for (int tick = 1; tick <= 3000 && !run.asleep; ++tick) {
+    if (tick == 2) poses[0] = moved(poses[0], 0, 0, 1 << 28);
+    auto plan = planTick(world.pack, reach, run.state, poses, run.state.parameters, {}, tile_limit);
+    ASSERT_TRUE(plan) << plan.error();
+    ASSERT_LE(plan->active.size(), tile_limit);
+    run.waiting_ticks += plan->waiting.empty() ? 0 : 1;
+    run.asleep = plan->active.empty();
+    ASSERT_TRUE(backend.submit(std::move(*plan), world.base, run.state));
+    auto effect = backend.settle(run.state);
+    ASSERT_TRUE(effect) << effect.error();
+    run.state.tick = tick;
+    run.state.previous_poses = std::exchange(run.state.poses, poses);
+    ASSERT_TRUE(backend.collect(run.state, effect->changes));
+    ASSERT_EQ(run.state.ledger.error(), 0);
+  }
+}
+
+TEST_P(Sleep, TilesThatAreTooManyForATickWaitAndComeToRestAllTheSame) {
+  const World world(columnPack(200, 8000000, 700));
+  CrowdedRun run, native;
+  ASSERT_NO_FATAL_FAILURE(runCrowded(world, *borrowBackend(GetParam()), 3, run));
+  EXPECT_TRUE(run.asleep);
+  EXPECT_GT(run.waiting_ticks, 10u);
+  EXPECT_GT(run.state.tiles.size(), 3u);
+  EXPECT_EQ(steepestExcess(world.pack, run.state.tiles), 0);
+  EXPECT_TRUE(recount(run.state));
+  ASSERT_NO_FATAL_FAILURE(runCrowded(world, *borrowBackend(backendCases().front()), 3, native));
+  EXPECT_EQ(stateHash(run.state), stateHash(native.state));
 }
 
 SPOOR_ON_EVERY_BACKEND(Sleep);

@@ -121,7 +121,7 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
     float open = (1.0 - look.cover) * min(2.0 - counted, 1.0);
     float pale = placeNoise(at, 13, 0x3c6ef372u).x * shownDetail(footprint_m.y, bitsSize(13));
     vec3 dirt = bareSoil() * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
-    vec3 char_black = vec3(0.024, 0.021, 0.019) * (1.0 + 1.2 * soil.x);
+    vec3 char_black = vec3(0.036, 0.031, 0.028) * (1.0 + 1.2 * soil.x);
     float black = 1.0 - (1.0 - marks.y) * (1.0 - marks.z);
     look.albedo += open * (black * char_black + (1.0 - black) * marks.x * dirt);
     look.bare += open * marks.x;

@@ -39,7 +39,7 @@ void addDetail(vec2 rel, vec2 footprint_cells, inout vec3 albedo, inout vec3 bou
   CraterLook look = craterLookAt(place.at, footprint_m);
   albedo = cover.albedo * (1.0 - look.cover) + look.albedo;
   bounced = bounced * (1.0 - look.cover) + look.albedo;
-  sky = mix(sky, 0.12 + 0.88 * sqrt(sky), look.cover);  // a cavity's walls light each other
+  sky = mix(sky, 0.30 + 0.70 * sqrt(sky), look.cover);  // a cavity's walls light each other
   slope += place.facing * frame.look.x * (cover.slope * (1.0 - look.bare) + look.slope);
 }
 

@@ -1,6 +1,7 @@
 // Stage active: the tiles and bodies of a tick, from nothing but state and input.
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <set>
 
 #include "shared/base/fixed.h"
@@ -87,13 +88,15 @@ Result<std::vector<Domain>> joinedDomains(const std::vector<CellBox>& boxes) {
 class Planner {
  public:
   Planner(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters)
+          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters,
+          std::size_t tile_limit)
       : pack_(pack),
         parameters_(parameters),
         reach_q_(reach_q),
         state_(state),
         poses_(poses),
         craters_(craters),
+        tile_limit_(tile_limit),
         // A straight walk out of a body's box passes a free cell of the ring around it.
         search_margin_(1 + (parameters.displacement == Displacement::spread ? parameters.spread_cells : 0)),
         placed_(poses.size()) {}
@@ -118,8 +121,8 @@ class Planner {
       if (!joined) return Error{joined.error()};
       domains = std::move(*joined);
     } while (placeResting());
-    if (tiles_.size() > kTickTilesLimit)
-      return Error{std::to_string(tiles_.size()) + " active tiles, the limit is " + std::to_string(kTickTilesLimit)};
+    if (tiles_.size() > tile_limit_)
+      if (Status status = letTilesWait(plan, domains); !status) return Error{status.error()};
     plan.active.assign(tiles_.begin(), tiles_.end());
     for (int step = 0; step < step_count_; ++step)
       plan.sub_steps.push_back(takeSubStep(step, std::move(domains[std::size_t(step)])));
@@ -130,6 +133,28 @@ class Planner {
   CellBox wholeWorld() const { return {0, 0, pack_.width_cells, pack_.height_cells}; }
   int activeMargin() const { return search_margin_ + parameters_.active_margin_cells; }
   CellBox activeBox(const PlacedBody& body) const { return grown(body.box, activeMargin(), pack_); }
+
+  /// Takes tiles out that are only awake until the rest is within the limit; each tick begins with others. They stay
+  /// awake (commitTick).
+  Status letTilesWait(TickPlan& plan, const std::vector<std::vector<Domain>>& domains) {
+    std::set<TileCoordinate> chosen;
+    for (const Tile* tile : state_.tiles.meeting(pack_, craters_)) chosen.insert(tile->at);
+    for (const PlacedBody& body : plan.stood.bodies) addTiles(activeBox(body), chosen);
+    for (const std::vector<PlacedBody>& steps : placed_)
+      for (const PlacedBody& body : steps) addTiles(activeBox(body), chosen);
+    for (const std::vector<Domain>& of_step : domains)
+      for (const Domain& domain : of_step) addTiles(domain.box, chosen);
+    if (chosen.size() > tile_limit_)
+      return Error{"bodies and craters meet " + std::to_string(chosen.size()) + " tiles, the limit is " +
+                   std::to_string(tile_limit_)};
+    std::vector<TileCoordinate> awake;
+    std::ranges::set_difference(tiles_, chosen, std::back_inserter(awake));
+    const std::size_t first = std::size_t(plan.tick) * tile_limit_ % awake.size();
+    for (std::size_t i = 0; chosen.size() < tile_limit_; ++i) chosen.insert(awake[(first + i) % awake.size()]);
+    std::ranges::set_difference(tiles_, chosen, std::back_inserter(plan.waiting));
+    tiles_ = std::move(chosen);
+    return {};
+  }
 
   /// A body that does not move acts only where something else woke the ground; in the first tick all press.
   bool moves(std::size_t body) const { return state_.tick == 0 || poses_[body] != state_.poses[body]; }
@@ -221,6 +246,7 @@ class Planner {
   const WorldState& state_;
   std::span<const Pose> poses_;
   std::span<const Crater> craters_;
+  std::size_t tile_limit_;
   int search_margin_;
   std::set<TileCoordinate> tiles_;
   int step_count_ = 1;
@@ -247,8 +273,9 @@ std::vector<std::int32_t> bodyReaches(const ScenePack& pack) {
 }
 
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
-                          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters) {
-  return Planner(pack, reach_q, state, poses, parameters, craters).plan();
+                          std::span<const Pose> poses, const Parameters& parameters, std::span<const Crater> craters,
+                          std::size_t tile_limit) {
+  return Planner(pack, reach_q, state, poses, parameters, craters, tile_limit).plan();
 }
 
 }  // namespace spoor

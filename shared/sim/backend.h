@@ -104,7 +104,7 @@ struct TileOutcome {
 void commitCraters(Tile& tile, std::int64_t gained, std::uint64_t hash, WorldState& state);
 
 /// Ends a tick: makes fresh tiles live, takes all to their new versions, hashes, sums and wake masks, and keeps the
-/// state's sums.
+/// state's sums. What a tile keeps active and had to wait in this tick it goes on keeping.
 /// @param outcomes  of each active tile
 /// @return          what changed: the outcomes' changes with all but their difference filled in
 std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std::vector<TileOutcome> outcomes,

@@ -39,11 +39,12 @@ struct SubStep {
 struct TickPlan {
   std::int32_t tick = 0;
   Parameters parameters;
-  std::vector<TileCoordinate> active;  // in (y, x) order
-  std::size_t first_new_crater = 0;    // those of the state's set from here on come with this tick
-  SubStep stood;                       // moving bodies where they were before the tick, a domain for each, which may
-                                       // overlap; cells that they covered take no soil in the first sub-step
-  std::vector<SubStep> sub_steps;      // none where nothing is active
+  std::vector<TileCoordinate> active;   // in (y, x) order
+  std::size_t first_new_crater = 0;     // those of the state's set from here on come with this tick
+  SubStep stood;                        // moving bodies where they were before the tick, a domain for each, which may
+                                        // overlap; cells that they covered take no soil in the first sub-step
+  std::vector<SubStep> sub_steps;       // none where nothing is active
+  std::vector<TileCoordinate> waiting;  // awake, or neighbours of such, and too many for this tick; in (y, x) order
   bool too_fast = false;  // a body moves farther than one cell per sub-step, at the most sub-steps there are
 };
 
@@ -63,9 +64,10 @@ inline constexpr std::int64_t kDomainCellsLimit = kWholeWorldCellsLimit;  // of 
 /// @param reach_q     bodyReaches
 /// @param parameters  of this tick (valid)
 /// @param craters     that come with this tick (valid); live tiles that they meet are active
-/// Errors: touching bodies join to a domain over the limits, or more than kTickTilesLimit tiles are active.
+/// @param tile_limit  tiles at most. Where more are awake the rest waits; which, depends on the tick's number
+/// Errors: touching bodies join to a domain over the limits, or bodies and craters alone meet too many tiles.
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
                           std::span<const Pose> poses, const Parameters& parameters,
-                          std::span<const Crater> craters = {});
+                          std::span<const Crater> craters = {}, std::size_t tile_limit = kTickTilesLimit);
 
 }  // namespace spoor

@@ -51,6 +51,7 @@ Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parame
   result.update.tick = plan->tick;
   result.update.poses.assign(poses.begin(), poses.end());
   result.update.parameters = parameters;
+  result.waiting_tiles = plan->waiting.size();
   result.too_fast = plan->too_fast;
   {
     StageTimer timer(result.effect.stage_ms, Stage::craters);

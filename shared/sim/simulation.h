@@ -11,10 +11,11 @@ namespace spoor {
 
 /// What one tick did: for the network, the session file and the table of figures.
 struct TickResult {
-  TickUpdate update;      // as published
-  TickEffect effect;      // its `changes` are those encoded in `update`
-  Ledger ledger;          // after this tick
-  bool too_fast = false;  // a body moved farther per sub-step than one cell; its trail may have gaps
+  TickUpdate update;              // as published
+  TickEffect effect;              // its `changes` are those encoded in `update`
+  Ledger ledger;                  // after this tick
+  std::size_t waiting_tiles = 0;  // TickPlan::waiting
+  bool too_fast = false;          // a body moved farther per sub-step than one cell; its trail may have gaps
 };
 
 /// A session's state and the rule that carries it from tick to tick. One thread; the backend has its own.

@@ -20,6 +20,18 @@ WakeMask wakeMaskOf(const CellBox& changed, int reach) {
   return mask;
 }
 
+/// Tiles that a tile keeps active and that wait for a later tick: it goes on keeping them.
+WakeMask stillWaiting(const Tile& tile, const TickPlan& plan) {
+  if (plan.waiting.empty()) return 0;
+  WakeMask mask = 0;
+  for (int bit = 0; bit < 9; ++bit) {
+    const TileCoordinate at{tile.at.x + bit % 3 - 1, tile.at.y + bit / 3 - 1};
+    if ((tile.wake_mask >> bit & 1) != 0 && std::ranges::binary_search(plan.waiting, at))
+      mask = WakeMask(mask | 1 << bit | kWakeSelf);
+  }
+  return mask;
+}
+
 }  // namespace
 
 ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const WorldState& state, ThreadPool& pool) {
@@ -81,7 +93,7 @@ std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std
     }
     change.hash = tile.hash;
     const CellBox box{change.x, change.y, change.x + change.width, change.y + change.height};
-    change.wake_mask = WakeMask(wakeMaskOf(box, reach) | wakeMaskOf(cratered, reach));
+    change.wake_mask = WakeMask(wakeMaskOf(box, reach) | wakeMaskOf(cratered, reach) | stillWaiting(tile, plan));
     state.tiles.setWake(tile, change.wake_mask);
     state.tiles_hash += tileStateHash(tile) - hash_before;
     state.ledger.ground += tile.ground - ground_before;
