@@ -117,15 +117,15 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
     uint turn = turnOf(from.x, from.y);
     vec3 marks = craterMarks(shape, away, turn, crumbs, middle_m);
     float cover = 1.0 - (1.0 - marks.x) * (1.0 - marks.y) * (1.0 - marks.z);
-    if (cover <= 0.0) continue;
     float open = (1.0 - look.cover) * min(2.0 - counted, 1.0);
+    look.slope += open * fineSlope(shape, vec2(from) / float(kUnitsPerMetre), turn, middle_m);
+    if (cover <= 0.0) continue;
     float pale = placeNoise(at, 13, 0x3c6ef372u).x * shownDetail(footprint_m.y, bitsSize(13));
     vec3 dirt = bareSoil() * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
     vec3 char_black = vec3(0.036, 0.031, 0.028) * (1.0 + 1.2 * soil.x);
     float black = 1.0 - (1.0 - marks.y) * (1.0 - marks.z);
     look.albedo += open * (black * char_black + (1.0 - black) * marks.x * dirt);
     look.bare += open * marks.x;
-    look.slope += open * fineSlope(shape, vec2(from) / float(kUnitsPerMetre), turn, middle_m);
     look.cover += open * cover;
     counted += cover;
   }
