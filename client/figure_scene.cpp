@@ -43,14 +43,14 @@ PackId idOf(const ScenePack& pack) { return packId(encodePack(pack)); }
 FigureScene::FigureScene(ScenePack pack, std::unique_ptr<Backend> backend)
     : pack_(std::make_unique<ScenePack>(std::move(pack))),
       base_(*pack_),
+      script_(base_),
       reach_q_(bodyReaches(*pack_)),
       simulation_(base_, idOf(*pack_), std::move(backend)) {}
 
 Status FigureScene::runTo(std::int32_t tick, const PosesAt& poses_at) {
-  const Script script(base_);
   while (state().tick < tick) {
     const std::vector<Pose> poses = poses_at(state().tick + 1);
-    const std::span<const Crater> craters = script.craters(state().tick + 1);
+    const std::span<const Crater> craters = script_.craters(state().tick + 1);
     if (state().tick + 1 == tick) {
       auto plan = planTick(*pack_, reach_q_, state(), poses, state().parameters, craters);
       if (!plan) return Error{"tick " + std::to_string(tick) + ": " + plan.error()};
@@ -63,8 +63,7 @@ Status FigureScene::runTo(std::int32_t tick, const PosesAt& poses_at) {
 }
 
 Status FigureScene::runTo(std::int32_t tick) {
-  const Script script(base_);
-  return runTo(tick, [&](std::int32_t at) { return script.poses(at); });
+  return runTo(tick, [this](std::int32_t at) { return script_.poses(at); });
 }
 
 ScenePack pressedBoxPack(Displacement displacement, Metric metric) {

@@ -6,6 +6,7 @@
 
 #include "client/terrain_view.h"
 #include "shared/sim/simulation.h"
+#include "shared/world/script.h"
 
 namespace spoor {
 
@@ -33,6 +34,7 @@ class FigureScene {
  private:
   std::unique_ptr<const ScenePack> pack_;  // where the base and the renderers keep pointing to
   BaseTerrain base_;
+  Script script_;
   std::vector<std::int32_t> reach_q_;
   Simulation simulation_;
   std::vector<TileCoordinate> active_;

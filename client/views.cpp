@@ -276,7 +276,7 @@ Camera craterView(const TerrainView& view, std::uint32_t id, CraterLook look, do
   };
   const glm::dvec3 edge_m = onGround(centre_m - ahead * outer_m, 0.0);  // about as high as before the explosion
   if (look == CraterLook::above) {
-    Camera camera = cameraLookingAt({centre_m, edge_m.z + 500.0}, {centre_m, 0.0});
+    Camera camera = cameraLookingAt({centre_m, edge_m.z + 500.0}, {centre_m, edge_m.z});
     camera.orthographic_height_m = 2.6 * std::max(outer_m, outer_m / aspect);
     return camera;
   }

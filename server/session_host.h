@@ -60,7 +60,7 @@ class SessionHost {
   /// Hands a tick over; returns at once. Ticks must come in order, from 1 on.
   virtual void publish(TickUpdate update) = 0;
 
-  /// Takes the craters that clients asked for since the last call, by (client, sequence); nothing where the host's
+  /// Takes the craters that clients asked for since the last call, as they came; nothing where the host's
   /// thread is at work on them this very moment: then they come with the next call. Never waits for a client.
   virtual std::vector<CraterOrder> tryTakeCraters() = 0;
   /// Says what became of orders; returns at once. After the tick they came with has been published.

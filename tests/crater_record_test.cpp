@@ -137,9 +137,15 @@ TEST(CraterRecord, TooManyInATickOrASessionAreRefused) {
   EXPECT_TRUE(validateNewCraters(pack, most, 0));
   EXPECT_TRUE(validateNewCraters(pack, most, kCratersLimit - kTickCratersLimit));
   EXPECT_EQ(validateNewCraters(pack, most, kCratersLimit - kTickCratersLimit + 1).error(),
-            "craters: the session has 2031617 and may have 2097152");
+            "craters: 2031617 and 65536 more, the limit of a session is 2097152");
   EXPECT_FALSE(validateNewCraters(pack, most, SIZE_MAX));
   EXPECT_TRUE(validateNewCraters(pack, {}, SIZE_MAX));
+  const std::int64_t cells = hashCellsOf(pack, goodCrater());
+  EXPECT_GT(cells, 0);
+  EXPECT_TRUE(validateNewCraters(pack, most.first(1), 0, kCraterHashCellsLimit - cells));
+  EXPECT_NE(
+      validateNewCraters(pack, most.first(1), 0, kCraterHashCellsLimit - cells + 1).error().find("larger cells help"),
+      std::string::npos);
 }
 
 TEST(CraterRecord, IsThirtySixBytesThatComeBack) {
@@ -276,8 +282,23 @@ TEST(PackWithCraters, IsRefusedWithMoreInATickThanThereMayBe) {
     pack.craters.back().tick = 3;
     pack.craters.back().id = std::uint32_t(i);
   }
-  EXPECT_FALSE(validatePack(pack));
+  pack.crater_limits.hash_cell_q = 1 << 30;
+  EXPECT_NE(validatePack(pack).error().find("more than 65536 in one tick"), std::string::npos);
   pack.craters.back().tick = 4;
+  EXPECT_TRUE(validatePack(pack)) << validatePack(pack).error();
+}
+
+TEST(PackWithCraters, IsRefusedWithMoreHashCellsThanASessionMayHave) {
+  ScenePack pack = timedPack();
+  const std::int64_t cells = hashCellsOf(pack, goodCrater());
+  pack.craters.clear();
+  for (std::int64_t i = 0; i <= kCraterHashCellsLimit / cells; ++i) {
+    pack.craters.push_back(goodCrater());
+    pack.craters.back().tick = std::int32_t(1 + i);
+    pack.craters.back().id = std::uint32_t(i);
+  }
+  EXPECT_NE(validatePack(pack).error().find("larger cells help"), std::string::npos);
+  pack.craters.pop_back();
   EXPECT_TRUE(validatePack(pack)) << validatePack(pack).error();
 }
 

@@ -158,6 +158,19 @@ TEST_F(GlCraterTables, RecordsThatCameSinceTheTableWasBuiltAreInARebuildToo) {
   updateAndCompare(set);
 }
 
+/// As a client's after a new snapshot: built once, as the one before.
+TEST_F(GlCraterTables, AnotherSetWithTheSameFirstRecordsIsLaidOutAnew) {
+  const ScenePack pack = mapPack(400, 400, 20000, 50000);
+  CraterSet before(pack), after(pack);
+  addRandom(before, pack, 10);
+  ASSERT_NO_FATAL_FAILURE(updateAndCompare(before));
+  std::vector<Crater> craters(before.records().begin(), before.records().end());
+  for (int i = 0; i < 500; ++i) craters.push_back(randomCrater(pack));
+  add(after, std::move(craters));
+  ASSERT_EQ(after.table().generation, before.table().generation);
+  ASSERT_NO_FATAL_FAILURE(updateAndCompare(after));
+}
+
 TEST_F(GlCraterTables, NewCratersTravelAloneAndLeaveTheRest) {
   const ScenePack pack = mapPack(900, 700, 30000, 40000);
   CraterSet set(pack);

@@ -205,7 +205,11 @@ TEST_F(Session, CratersThatCannotBeAreReported) {
     for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
     payload.put(count);
     ByteWriter block;
-    for (std::uint32_t i = 0; i < std::min(count, 4u); ++i) putCrater(block, crater);
+    for (std::uint32_t i = 0; i < std::min(count, 4u); ++i) {
+      Crater numbered = crater;
+      numbered.id += i;
+      putCrater(block, numbered);
+    }
     block.bytes.resize(bytes);
     payload.putBytes(block.bytes);
     ByteWriter file;
@@ -227,6 +231,12 @@ TEST_F(Session, CratersThatCannotBeAreReported) {
     EXPECT_NE(withCraters(2, good, size).error.find("is of a wrong size"), std::string::npos) << size;
   EXPECT_NE(withCraters(0xffffffff, good, kCraterBytes).error.find("is of a wrong size"), std::string::npos);
   Crater wrong = good;
+  wrong.id = 1;
+  EXPECT_NE(withCraters(1, wrong, kCraterBytes).error.find("of another tick or id"), std::string::npos);
+  wrong = good;
+  wrong.tick = 2;
+  EXPECT_NE(withCraters(1, wrong, kCraterBytes).error.find("of another tick or id"), std::string::npos);
+  wrong = good;
   wrong.depth_q = -1;
   EXPECT_NE(withCraters(1, wrong, kCraterBytes).error.find("D5 is -0.0001 m"), std::string::npos);
   wrong = good;

@@ -49,8 +49,8 @@ struct GlCraterTable::Programs {
 GlCraterTable::GlCraterTable(std::int64_t block_bytes)
     : head_(makeBuffer()),
       shapes_("the craters", block_bytes, GrowingBuffer::Content::kept),
-      first_("the buckets of craters", block_bytes),
-      used_("the buckets of craters", block_bytes),
+      first_("the first places of craters' buckets", block_bytes),
+      used_("the filling of craters' buckets", block_bytes),
       entries_("the entries of craters", block_bytes),
       starts_("the stretches of craters' buckets", block_bytes),
       heads_("the lists of craters' buckets", block_bytes),
@@ -59,6 +59,12 @@ GlCraterTable::GlCraterTable(std::int64_t block_bytes)
 }
 
 GlCraterTable::~GlCraterTable() = default;
+
+void GlCraterTable::forgetRecords() {
+  sent_count_ = inserted_count_ = 0;
+  built_count_ = 0;
+  bucket_count_ = 0;
+}
 
 Status GlCraterTable::compile() {
   try {
@@ -71,19 +77,21 @@ Status GlCraterTable::compile() {
 
 Status GlCraterTable::update(const CraterSet& craters, std::int32_t cell_q) {
   Status status = bringTo(craters, cell_q);
-  if (!status) sent_count_ = inserted_count_ = generation_ = 0;
+  if (!status) forgetRecords();
   return status;
 }
 
 Status GlCraterTable::bringTo(const CraterSet& craters, std::int32_t cell_q) {
   const CraterTable& table = craters.table();
-  if (craters.size() < sent_count_) sent_count_ = inserted_count_ = generation_ = 0;
+  if (craters.size() < sent_count_) forgetRecords();
   if (craters.size() == 0) return sendHead(kNone), glStatus("sending craters");
-  if (craters.size() == inserted_count_ && table.generation == generation_) return {};
+  // Of sets with the same first records those that were built with as many are laid out alike.
+  const bool laid_out = table.built_count == built_count_ && std::int64_t(table.used.size()) == bucket_count_;
+  if (craters.size() == inserted_count_ && laid_out) return {};
   if (Status status = compile(); !status) return status;
   if (Status status = sendShapes(craters.records().subspan(sent_count_)); !status) return status;
   sendHead({table.side_q, table.width_q, table.height_q, table.mask(), int(craters.size()), cell_q, {}});
-  if (table.generation != generation_)
+  if (!laid_out)
     if (Status status = layOut(table); !status) return status;
   insert(table, craters.records().subspan(inserted_count_));
   inserted_count_ = craters.size();
@@ -136,7 +144,8 @@ Status GlCraterTable::layOut(const CraterTable& table) {
   dispatch(programs_->scan.name(), 1, 0, int(lanes), rules::kCraterScanLanes);
   dispatch(programs_->first.name(), lanes, 0, 0, kGroup);
   inserted_count_ = 0;
-  generation_ = table.generation;
+  built_count_ = table.built_count;
+  bucket_count_ = buckets;
   return {};
 }
 
@@ -178,7 +187,7 @@ void GlCraterTable::bind(int first_binding) const {
 }
 
 void GlCraterTable::forget() {
-  sent_count_ = inserted_count_ = generation_ = 0;
+  forgetRecords();
   sendHead(kNone);
 }
 

@@ -38,6 +38,7 @@ class GlCraterTable {
  private:
   struct Programs;
 
+  void forgetRecords();
   Status bringTo(const CraterSet& craters, std::int32_t cell_q);
   Status sendShapes(std::span<const Crater> craters);
   void sendHead(const rules::CraterHead& head);
@@ -51,7 +52,8 @@ class GlCraterTable {
   GrowingBuffer starts_, heads_, nodes_;
   std::size_t sent_count_ = 0;      // craters whose shapes the device holds
   std::size_t inserted_count_ = 0;  // of them in the hash
-  std::uint32_t generation_ = 0;    // CraterTable::generation of what the device holds; 0: nothing
+  std::uint32_t built_count_ = 0;   // CraterTable::built_count that set the layout
+  std::int64_t bucket_count_ = 0;   // 0: there is none yet
   std::int64_t copied_bytes_ = 0, dispatch_count_ = 0;
 };
 

@@ -3,6 +3,8 @@
 #define CRATER_BINDING kCraterBinding
 #include "../sim/crater_table.glsl"
 
+const int kCraterLooks = 4096;  // entries of a bucket that a pixel looks at, the newest
+
 struct CraterLook {
   vec3 albedo;  // times the share that it covers
   float cover;  // share of the ground that it hides
@@ -21,7 +23,7 @@ vec3 bareSoil() {
 /// An octave of the radial noise's kind, between its own and the grain: 2^fold times 24 spokes. -1 .. 1.
 float fineOctave(uint seed, int fold, uint turn, float radius) {
   uint around = mulHigh(turn << uint(fold), 24u << kNoiseBits);
-  uint out_q27 = uint(clamp(radius, 0.0, 1.9999) * float(16 << kNoiseBits));
+  uint out_q27 = uint(clamp(radius, 0.0, 1.9999) * float(16u << kNoiseBits));
   return float(noiseOctave(seed, 24, around, out_q27)) / float(kNoiseOne);
 }
 
@@ -102,12 +104,14 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
   vec3 soil = vec3(0.0);
   float middle_m = 0.6 * sqrt(footprint_m.x * footprint_m.y);
   bool first = true;
-  for (int i = range.end - 1; i >= range.first && counted < 2.0 && look.cover < 0.998; --i) {
+  int last = max(range.first, range.end - kCraterLooks);
+  for (int i = range.end - 1; i >= last && counted < 2.0 && look.cover < 0.998; --i) {
     if (crater_entries[i].tag != range.tag) continue;
     int record = crater_entries[i].record;
     ivec2 from = at - ivec2(crater_shapes[record].x, crater_shapes[record].y);
     float away = length(vec2(from));
-    if (away >= float(crater_shapes[record].outer)) continue;
+    float outer = float(crater_shapes[record].outer);
+    if (away >= outer || middle_m * float(kUnitsPerMetre) >= 2.0 * outer) continue;  // or too small to be seen
     if (first) {
       first = false;
       crumbs = crumbsAt(at, footprint_m.y);

@@ -155,13 +155,17 @@ RULE int craterRoughness(CraterShape shape, int dx, int dy, uint radius) {
   return wideLow(wideDown(wideMul(shape.amplitude, craterNoise(shape.seed, turnOf(dx, dy), radius)), kNoiseBits));
 }
 
-/// What the crater adds to the ground, rounded to nearest.
-/// @param height  of the crest above the zone's bottom, with noise, in 1/256 units
-/// @param bottom  -depth inside, 0 outside
-RULE int craterLift(int height, uint share, int bottom) {
+/// What the crater adds to the ground at (dx, dy) from its centre, in a zone, rounded to nearest.
+/// @param inside  is it the cavity or the inner zone?
+/// @param rough   is there noise?
+RULE int craterLift(CraterShape shape, int dx, int dy, CraterPlace place, bool inside, bool rough) {
+  int depth = inside ? shape.depth : 0;
+  int height = (shape.rim + depth) << 8;
+  if (rough) height += craterRoughness(shape, dx, dy, place.radius);
   const int bias = 1 << 25;  // keeps what is shifted above 0
-  wide lifted = wideAdd(wideMul(height, int(share)), wideAdd(wideUp(wideFrom(1), 36), wideUp(wideFrom(bias), 37)));
-  return wideLow(wideDown(lifted, 37)) - bias + bottom;
+  wide lifted =
+      wideAdd(wideMul(height, int(place.share)), wideAdd(wideUp(wideFrom(1), 36), wideUp(wideFrom(bias), 37)));
+  return wideLow(wideDown(lifted, 37)) - bias - depth;
 }
 
 /// What a crater adds to the ground at (dx, dy) from its centre: + rim, - cavity, 0 beyond R3. Less than one unit from
@@ -178,10 +182,7 @@ RULE int craterDisplacement(CraterShape shape, int dx, int dy) {
     place = placeInside(shape, square);
   else
     place = placeOutside(shape, square, beyond);
-  int depth = inside ? shape.depth : 0;
-  int height = (shape.rim + depth) << 8;
-  if (shape.amplitude > 0) height += craterRoughness(shape, dx, dy, place.radius);
-  return craterLift(height, place.share, -depth);
+  return craterLift(shape, dx, dy, place, inside, shape.amplitude > 0);
 }
 
 /// What the craters of a set do to one cell, so far. The order in which they are added does not show.

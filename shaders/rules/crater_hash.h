@@ -22,7 +22,7 @@ RULE int craterBucket(int cell_x, int cell_y, int mask) {
 RULE uint craterTag(int cell_x, int cell_y) { return (uint(cell_x) & 0xffffu) | (uint(cell_y) << 16); }
 
 /// Places of a bucket that is built with `count` entries.
-RULE int craterCapacity(int count) { return count + (count >> 1) + 2; }
+RULE int craterCapacity(int count) { return count + (count >> 1) + 6; }
 
 /// First and last cell, along one axis, that a crater meets; none where first > last.
 /// Ranges: those of a valid crater; centre + outer may be more than an int holds.

@@ -68,16 +68,13 @@ template <bool kInside, bool kNoise>
 [[gnu::flatten]] void craterCells(const rules::CraterShape& shape, int dx, int step, int dy, int n,
                                   int32_t* __restrict displacement) {
   const rules::CraterShape own = shape;
-  const int depth = kInside ? own.depth : 0;
   const int64_t dy_square = int64_t(dy) * dy, crest_square = int64_t(own.crest) * own.crest;
   for (int i = 0; i < n; ++i) {
     const int x = dx + i * step;
     const int64_t square = int64_t(x) * x + dy_square;
     const rules::CraterPlace place =
         kInside ? rules::placeInside(own, square) : rules::placeOutside(own, square, square - crest_square);
-    int height = (own.rim + depth) << 8;
-    if (kNoise) height += rules::craterRoughness(own, x, dy, place.radius);
-    displacement[i] = rules::craterLift(height, place.share, -depth);
+    displacement[i] = rules::craterLift(own, x, dy, place, kInside, kNoise);
   }
 }
 

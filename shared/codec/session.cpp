@@ -192,7 +192,11 @@ Result<std::optional<TickRecord>> SessionReader::next() {
   if (reader.failed() || (reader.left() != crater_bytes && reader.left() != crater_bytes + kParametersBytes))
     return Error{where + "tick record is of a wrong size"};
   for (std::size_t i = 0; i < crater_count; ++i) tick.craters.push_back(getCrater(reader));
-  if (Status status = validateNewCraters(pack_, tick.craters, 0); !status) return Error{where + status.error()};
+  if (Status status = validateNewCraters(pack_, tick.craters, crater_count_); !status)
+    return Error{where + status.error()};
+  for (const Crater& crater : tick.craters)
+    if (crater.tick != tick.tick || crater.id != crater_count_++)
+      return Error{where + "a crater of another tick or id"};
   if (reader.left() > 0) {
     tick.parameters = getParameters(reader);
     if (Status status = validateParameters(pack_, *tick.parameters); !status) return Error{where + status.error()};

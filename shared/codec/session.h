@@ -66,6 +66,7 @@ class SessionReader {
   PackId id_;
   std::int64_t position_ = 0;
   std::int32_t last_tick_ = 0;
+  std::size_t crater_count_ = 0;  // of the ticks read
   bool truncated_ = false;
 };
 

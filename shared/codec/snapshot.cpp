@@ -15,6 +15,7 @@ Status readCraters(ByteReader& reader, const ScenePack& pack, WorldState& state)
     return Error{std::to_string(count) + " craters announced, more than there can be"};
   std::vector<Crater> craters;
   craters.reserve(count);
+  std::int64_t hash_cells = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Crater& crater = craters.emplace_back(getCrater(reader));
     const std::int32_t before = i > 0 ? craters[i - 1].tick : 1;
@@ -22,6 +23,9 @@ Status readCraters(ByteReader& reader, const ScenePack& pack, WorldState& state)
       return Error{"crater " + std::to_string(i) + " is out of order"};
     if (Status status = validateCrater(pack, crater); !status)
       return Error{"crater " + std::to_string(i) + ": " + status.error()};
+    hash_cells += hashCellsOf(pack, crater);
+    if (hash_cells > kCraterHashCellsLimit)
+      return Error{"its craters are in more than " + std::to_string(kCraterHashCellsLimit) + " hash cells"};
   }
   state.craters = CraterSet(pack);
   state.craters.add(craters);

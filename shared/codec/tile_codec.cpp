@@ -315,7 +315,8 @@ Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& u
   if (update.parameters)
     if (Status status = validateParameters(base.pack(), *update.parameters); !status)
       return Error{tick_name + status.error()};
-  if (Status status = validateNewCraters(base.pack(), update.craters, state.craters.size()); !status)
+  if (Status status = validateNewCraters(base.pack(), update.craters, state.craters.size(), state.craters.hashCells());
+      !status)
     return Error{tick_name + status.error()};
   const std::size_t crater_count = state.craters.size();
   for (std::size_t i = 0; i < update.craters.size(); ++i)

@@ -121,7 +121,7 @@ class Planner {
       if (!joined) return Error{joined.error()};
       domains = std::move(*joined);
     } while (placeResting());
-    if (tiles_.size() > tile_limit_)
+    if (tooMany())
       if (Status status = letTilesWait(plan, domains); !status) return Error{status.error()};
     plan.active.assign(tiles_.begin(), tiles_.end());
     for (int step = 0; step < step_count_; ++step)
@@ -134,23 +134,37 @@ class Planner {
   int activeMargin() const { return search_margin_ + parameters_.active_margin_cells; }
   CellBox activeBox(const PlacedBody& body) const { return grown(body.box, activeMargin(), pack_); }
 
-  /// Takes tiles out that are only awake until the rest is within the limit; each tick begins with others. They stay
+  /// More tiles than a tick may simulate, or a world may have live?
+  bool tooMany() const {
+    return tiles_.size() > tile_limit_ || state_.tiles.size() + tiles_.size() > kSnapshotTilesLimit;
+  }
+
+  /// Takes tiles out that are only awake until the rest is within the limits; each tick begins with others. They stay
   /// awake (commitTick).
   Status letTilesWait(TickPlan& plan, const std::vector<std::vector<Domain>>& domains) {
     std::set<TileCoordinate> chosen;
     for (const Tile* tile : state_.tiles.meeting(pack_, craters_)) chosen.insert(tile->at);
     for (const PlacedBody& body : plan.stood.bodies) addTiles(activeBox(body), chosen);
-    for (const std::vector<PlacedBody>& steps : placed_)
-      for (const PlacedBody& body : steps) addTiles(activeBox(body), chosen);
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+      if (moves(i))
+        for (const PlacedBody& body : placed_[i]) addTiles(activeBox(body), chosen);
     for (const std::vector<Domain>& of_step : domains)
       for (const Domain& domain : of_step) addTiles(domain.box, chosen);
-    if (chosen.size() > tile_limit_)
-      return Error{"bodies and craters meet " + std::to_string(chosen.size()) + " tiles, the limit is " +
-                   std::to_string(tile_limit_)};
+    if (parameters_.active_areas == 0) chosen = tiles_;
+    const auto isDormant = [this](TileCoordinate at) { return state_.tiles.find(at) == nullptr; };
+    std::size_t live = state_.tiles.size() + std::size_t(std::ranges::count_if(chosen, isDormant));
+    if (chosen.size() > tile_limit_ || live > kSnapshotTilesLimit)
+      return Error{"bodies and craters meet " + std::to_string(chosen.size()) + " tiles and leave " +
+                   std::to_string(live) + " live, the limits are " + std::to_string(tile_limit_) + " and " +
+                   std::to_string(kSnapshotTilesLimit)};
     std::vector<TileCoordinate> awake;
     std::ranges::set_difference(tiles_, chosen, std::back_inserter(awake));
-    const std::size_t first = std::size_t(plan.tick) * tile_limit_ % awake.size();
-    for (std::size_t i = 0; chosen.size() < tile_limit_; ++i) chosen.insert(awake[(first + i) % awake.size()]);
+    const std::size_t first = awake.empty() ? 0 : std::size_t(plan.tick) * (tile_limit_ - chosen.size()) % awake.size();
+    for (std::size_t i = 0; i < awake.size() && chosen.size() < tile_limit_; ++i) {
+      const TileCoordinate at = awake[(first + i) % awake.size()];
+      if (isDormant(at) && live++ >= kSnapshotTilesLimit) continue;
+      chosen.insert(at);
+    }
     std::ranges::set_difference(tiles_, chosen, std::back_inserter(plan.waiting));
     tiles_ = std::move(chosen);
     return {};

@@ -65,7 +65,8 @@ inline constexpr std::int64_t kDomainCellsLimit = kWholeWorldCellsLimit;  // of 
 /// @param parameters  of this tick (valid)
 /// @param craters     that come with this tick (valid); live tiles that they meet are active
 /// @param tile_limit  tiles at most. Where more are awake the rest waits; which, depends on the tick's number
-/// Errors: touching bodies join to a domain over the limits, or bodies and craters alone meet too many tiles.
+/// Errors: touching bodies join to a domain over the limits, or bodies and craters alone meet too many tiles, or
+/// would leave more than kSnapshotTilesLimit live.
 Result<TickPlan> planTick(const ScenePack& pack, std::span<const std::int32_t> reach_q, const WorldState& state,
                           std::span<const Pose> poses, const Parameters& parameters,
                           std::span<const Crater> craters = {}, std::size_t tile_limit = kTickTilesLimit);

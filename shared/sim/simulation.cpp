@@ -38,7 +38,9 @@ Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parame
   if (Status status = validatePoses(base_->pack(), poses); !status) return status;
   if (parameters)
     if (Status status = validateParameters(base_->pack(), *parameters); !status) return status;
-  if (Status status = validateNewCraters(base_->pack(), craters, state_.craters.size()); !status) return status;
+  if (Status status = validateNewCraters(base_->pack(), craters, state_.craters.size(), state_.craters.hashCells());
+      !status)
+    return status;
   if (Status status = settle(); !status) return status;
   TickResult result;
   result.update.craters = numbered(craters, state_.tick + 1, state_.craters.size());
@@ -97,8 +99,10 @@ Result<TickResult> Simulation::finish() {
   in_flight_.pop_front();
   {
     StageTimer timer(result.effect.stage_ms, Stage::delta);
-    if (Status status = backend_->collect(state_, result.effect.changes); !status)
+    if (Status status = backend_->collect(state_, result.effect.changes); !status) {
+      if (submitted_) state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
       return failure_.emplace(Error{status.error()});
+    }
     result.update.tiles = encodeTiles(result.effect.changes);
   }
   return result;

@@ -49,8 +49,8 @@ class Simulation {
   /// Ticks begun and not finished.
   std::size_t inFlight() const { return in_flight_.size() + (submitted_ ? 1 : 0); }
 
-  /// After the last tick finished, but where another has been begun since: then tick, poses, hashes and sums may be of
-  /// that one already, and cells of either.
+  /// After the last tick finished, but where another has been begun since: then craters are of that one, tick, poses,
+  /// hashes and sums may be, and cells of either.
   const WorldState& state() const { return state_; }
   const Backend& backend() const { return *backend_; }
 

@@ -37,12 +37,13 @@ WakeMask stillWaiting(const Tile& tile, const TickPlan& plan) {
 ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const WorldState& state, ThreadPool& pool) {
   ActiveTiles active;
   std::vector<std::size_t> missing;
+  const auto met = state.tiles.meeting(base.pack(), state.craters.records().subspan(plan.first_new_crater));
   for (const TileCoordinate at : plan.active) {
     active.tiles.push_back(const_cast<Tile*>(state.tiles.find(at)));
     active.cratered.emplace_back();
     if (active.tiles.back() == nullptr)
       missing.push_back(active.tiles.size() - 1);
-    else
+    else if (std::ranges::binary_search(met, at, {}, &Tile::at))
       active.cratered.back() = cratersWithin(at, base.pack(), state.craters, plan.first_new_crater);
   }
   const DormantGround dormant{&base, &state.craters};

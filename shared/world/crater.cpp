@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "shaders/rules/crater_hash.h"
 #include "shared/base/fixed.h"
 #include "shared/world/pack.h"
 
@@ -25,7 +26,7 @@ Status validateCraterLimits(const CraterLimits& limits) {
   };
   constexpr std::int32_t reach = rules::kCraterReachLimit;
   if (limits.radius_q < 0 || limits.radius_q > reach) return outside("craters.radius_q", limits.radius_q, 0, reach);
-  // A crater then meets at most 34 x 34 cells.
+  // A crater is then in at most 34 x 34 of them.
   const std::int32_t least = std::max(1, (limits.radius_q + 15) / 16);
   constexpr std::int32_t most = 1 << 30;
   if (limits.hash_cell_q < least || limits.hash_cell_q > most)
@@ -65,16 +66,35 @@ Status validateCrater(const ScenePack& pack, const Crater& crater) {
   return {};
 }
 
-Status validateNewCraters(const ScenePack& pack, std::span<const Crater> craters, std::size_t before) {
+Status validateNewCraters(const ScenePack& pack, std::span<const Crater> craters, std::size_t before,
+                          std::int64_t hash_cells_before) {
   if (craters.size() > kTickCratersLimit)
     return Error{std::to_string(craters.size()) + " craters in one tick, the limit is " +
                  std::to_string(kTickCratersLimit)};
   if (craters.size() > kCratersLimit - std::min(before, kCratersLimit))
-    return Error{"craters: the session has " + std::to_string(before) + " and may have " +
-                 std::to_string(kCratersLimit)};
-  for (const Crater& crater : craters)
+    return Error{"craters: " + std::to_string(before) + " and " + std::to_string(craters.size()) +
+                 " more, the limit of a session is " + std::to_string(kCratersLimit)};
+  std::int64_t hash_cells = hash_cells_before;
+  for (const Crater& crater : craters) {
     if (Status status = validateCrater(pack, crater); !status) return status;
+    hash_cells += hashCellsOf(pack, crater);
+  }
+  if (hash_cells > kCraterHashCellsLimit)
+    return Error{"craters: they would be in " + std::to_string(hash_cells) + " cells of " +
+                 metres(pack.crater_limits.hash_cell_q) + ", the limit of a session is " +
+                 std::to_string(kCraterHashCellsLimit) + "; larger cells help"};
   return {};
+}
+
+std::int64_t hashCellsOf(const ScenePack& pack, const Crater& crater) {
+  const auto outer = std::int32_t(crater.outerRadius());
+  const auto count = [&](std::int32_t centre, std::int32_t cells) {
+    const std::int32_t side = pack.crater_limits.hash_cell_q;
+    return std::int64_t(rules::craterLastCell(centre, outer, side, cells * pack.cell_q)) -
+           rules::craterFirstCell(centre, outer, side) + 1;
+  };
+  return std::max<std::int64_t>(count(crater.x_q, pack.width_cells), 0) *
+         std::max<std::int64_t>(count(crater.y_q, pack.height_cells), 0);
 }
 
 void putCrater(ByteWriter& writer, const Crater& crater) {

@@ -34,6 +34,9 @@ struct Crater {
 inline constexpr std::size_t kCraterBytes = 6 * 4 + 2 * 2 + 2 * 4;
 inline constexpr std::size_t kCratersLimit = std::size_t(1) << 21;      // of a session
 inline constexpr std::size_t kTickCratersLimit = std::size_t(1) << 16;  // of a tick
+// Of a session, all craters together: cells of the spatial hash that they are in. With their places to spare they fit
+// the storage block of 128 MiB that every OpenGL 4.5 gives.
+inline constexpr std::int64_t kCraterHashCellsLimit = std::int64_t(1) << 22;
 
 /// What a scene admits. Clients see it with the pack; the server holds them to it.
 struct CraterLimits {
@@ -50,12 +53,16 @@ struct CraterLimits {
 /// Checks limits of a pack. The error names the field.
 [[nodiscard]] Status validateCraterLimits(const CraterLimits& limits);
 
-/// Checks all of a crater but its tick and id against a pack: sizes and their order, and that some of it lies on the
-/// map. The error names what is wrong, with the value and what is allowed.
+/// Checks all of a crater but its tick and id against a pack: sizes and their order, and that the square about it meets
+/// the map. The error names what is wrong, with the value and what is allowed.
 [[nodiscard]] Status validateCrater(const ScenePack& pack, const Crater& crater);
 
-/// Checks craters that are to come with one tick, when a session has `before` of them.
-[[nodiscard]] Status validateNewCraters(const ScenePack& pack, std::span<const Crater> craters, std::size_t before);
+/// Checks craters that are to be added to a session's `before` ones, which are in `hash_cells_before` hash cells.
+[[nodiscard]] Status validateNewCraters(const ScenePack& pack, std::span<const Crater> craters, std::size_t before,
+                                        std::int64_t hash_cells_before = 0);
+
+/// In how many cells of the spatial hash a valid crater is.
+std::int64_t hashCellsOf(const ScenePack& pack, const Crater& crater);
 
 void putCrater(ByteWriter& writer, const Crater& crater);
 /// Reads what putCrater wrote; values are not checked (validateCrater).

@@ -48,6 +48,8 @@ void CraterSet::add(std::span<const Crater> craters) {
     SPOOR_ASSERT(crater.id == records_.size() && records_.size() < kCratersLimit);
     records_.push_back(crater);
     hash_ = hashOf(hash_, crater);
+    forEachHashCell(crater, [&](int, std::uint32_t) { ++hash_cells_; });
+    SPOOR_ASSERT(hash_cells_ <= kCraterHashCellsLimit);
     fits = fits && insert(crater.id);
   }
   if (!fits && !craters.empty()) build();
@@ -57,7 +59,11 @@ void CraterSet::truncate(std::size_t count) {
   if (count >= records_.size()) return;
   records_.resize(count);
   hash_ = 0;
-  for (const Crater& crater : records_) hash_ = hashOf(hash_, crater);
+  hash_cells_ = 0;
+  for (const Crater& crater : records_) {
+    hash_ = hashOf(hash_, crater);
+    forEachHashCell(crater, [&](int, std::uint32_t) { ++hash_cells_; });
+  }
   build();
 }
 
@@ -87,9 +93,7 @@ bool CraterSet::insert(std::uint32_t record) {
 
 /// Counting, a prefix sum, and then each record to its place.
 void CraterSet::build() {
-  std::size_t entries = 0;
-  for (const Crater& crater : records_) forEachHashCell(crater, [&](int, std::uint32_t) { ++entries; });
-  const std::size_t buckets = std::bit_ceil(std::max(kLeastBuckets, entries / kEntriesPerBucket));
+  const std::size_t buckets = std::bit_ceil(std::max(kLeastBuckets, std::size_t(hash_cells_) / kEntriesPerBucket));
   table_.used.assign(buckets, 0);
   for (const Crater& crater : records_)
     forEachHashCell(crater, [&](int bucket, std::uint32_t) { ++table_.used[std::size_t(bucket)]; });
@@ -117,20 +121,26 @@ std::vector<std::uint32_t> CraterSet::meeting(const CellBox& cells, std::size_t*
   if (box.empty() || records_.empty()) return found;
   const std::int64_t west = std::int64_t(box.x0) * cell_q_, east = std::int64_t(box.x1) * cell_q_ - 1;
   const std::int64_t south = std::int64_t(box.y0) * cell_q_, north = std::int64_t(box.y1) * cell_q_ - 1;
-  for (auto y = std::int32_t(south / table_.side_q); y <= north / table_.side_q; ++y)
-    for (auto x = std::int32_t(west / table_.side_q); x <= east / table_.side_q; ++x) {
+  const auto look = [&](const Crater& crater) {
+    if (read != nullptr) ++*read;
+    const std::int64_t outer = crater.outerRadius();
+    if (crater.x_q + outer >= west && crater.x_q - outer <= east && crater.y_q + outer >= south &&
+        crater.y_q - outer <= north)
+      found.push_back(crater.id);
+  };
+  const std::int64_t x0 = west / table_.side_q, x1 = east / table_.side_q;
+  const std::int64_t y0 = south / table_.side_q, y1 = north / table_.side_q;
+  if ((x1 - x0 + 1) * (y1 - y0 + 1) > std::int64_t(records_.size())) {  // fewer records than hash cells
+    std::ranges::for_each(records_, look);
+    return found;
+  }
+  for (auto y = std::int32_t(y0); y <= y1; ++y)
+    for (auto x = std::int32_t(x0); x <= x1; ++x) {
       const auto bucket = std::size_t(rules::craterBucket(x, y, table_.mask()));
       const std::uint32_t tag = rules::craterTag(x, y);
       const rules::CraterEntry* entry = table_.entries.data() + table_.first[bucket];
-      for (const rules::CraterEntry* end = entry + table_.used[bucket]; entry != end; ++entry) {
-        if (entry->tag != tag) continue;
-        if (read != nullptr) ++*read;
-        const Crater& crater = records_[std::size_t(entry->record)];
-        const std::int64_t outer = crater.outerRadius();
-        if (crater.x_q + outer >= west && crater.x_q - outer <= east && crater.y_q + outer >= south &&
-            crater.y_q - outer <= north)
-          found.push_back(crater.id);
-      }
+      for (const rules::CraterEntry* end = entry + table_.used[bucket]; entry != end; ++entry)
+        if (entry->tag == tag) look(records_[std::size_t(entry->record)]);
     }
   std::ranges::sort(found);
   found.erase(std::unique(found.begin(), found.end()), found.end());
@@ -154,11 +164,11 @@ struct CraterSet::Lattice {
 };
 
 void CraterSet::addTo(std::span<rules::CraterSum> sums, const Lattice& lattice, const Crater& crater) const {
-  const rules::CraterShape shape = shapeOf(crater);
   const CellBox box = craterBox(cell_q_, width_cells_, height_cells_, crater);
   const auto [x0, x1] = Lattice::samplesIn(lattice.x, lattice.stride, lattice.columns, box.x0, box.x1);
   const auto [y0, y1] = Lattice::samplesIn(lattice.y, lattice.stride, lattice.rows, box.y0, box.y1);
-  if (x0 >= x1) return;
+  if (x0 >= x1 || y0 >= y1) return;
+  const rules::CraterShape shape = shapeOf(crater);
   std::vector<std::int32_t> displacement(std::size_t(x1 - x0));
   const std::int32_t dx = (lattice.x + x0 * lattice.stride) * cell_q_ + cell_q_ / 2 - shape.x;
   for (std::int32_t row = y0; row < y1; ++row) {

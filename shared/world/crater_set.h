@@ -41,6 +41,8 @@ class CraterSet {
   std::span<const Crater> records() const { return records_; }
   std::size_t size() const { return records_.size(); }
   const CraterTable& table() const { return table_; }
+  /// In how many hash cells the records are, all together.
+  std::int64_t hashCells() const { return hash_cells_; }
   /// Of all records, in order.
   std::uint64_t hash() const { return hash_; }
 
@@ -70,6 +72,7 @@ class CraterSet {
   CraterTable table_;
   std::vector<Crater> records_;
   std::uint64_t hash_ = 0;
+  std::int64_t hash_cells_ = 0;
 };
 
 }  // namespace spoor

@@ -122,6 +122,7 @@ Status validateTimedCraters(const ScenePack& pack) {
   if (Status status = validateCraterLimits(pack.crater_limits); !status) return Error{"pack: " + status.error()};
   SPOOR_CHECK_RANGE(std::int64_t(pack.craters.size()), 0, std::int64_t(kCratersLimit));
   std::size_t of_tick = 0;
+  std::int64_t hash_cells = 0;
   for (std::size_t i = 0; i < pack.craters.size(); ++i) {
     const Crater& crater = pack.craters[i];
     const std::string name = "pack: crater " + std::to_string(i) + ": ";
@@ -133,6 +134,10 @@ Status validateTimedCraters(const ScenePack& pack) {
     of_tick = crater.tick == before ? of_tick + 1 : 1;
     if (of_tick > kTickCratersLimit)
       return Error{name + "more than " + std::to_string(kTickCratersLimit) + " in one tick"};
+    hash_cells += hashCellsOf(pack, crater);
+    if (hash_cells > kCraterHashCellsLimit)
+      return Error{name + "together they are in more than " + std::to_string(kCraterHashCellsLimit) +
+                   " hash cells; larger cells help"};
   }
   return {};
 }

@@ -127,9 +127,8 @@ ScenePack makeField(double disc_m, double cell_m, double hash_cell_m) {
   pack.width_cells = pack.height_cells = std::int32_t(std::lround((disc_m + 40) / cell_m));
   pack.soil_depth_q = 20 * rules::kUnitsPerMetre;
   pack.noise = {5, std::int64_t(std::lround(cell_m * 0.02 * 4294967296.0)), 3, 0, 30000};
-  pack.crater_limits.radius_q = rules::kCraterReachLimit;
   pack.crater_limits.hash_cell_q = std::int32_t(std::lround(hash_cell_m * rules::kUnitsPerMetre));
-  pack.crater_limits.radius_q = std::min(pack.crater_limits.radius_q, pack.crater_limits.hash_cell_q);
+  pack.crater_limits.radius_q = std::min(rules::kCraterReachLimit, pack.crater_limits.hash_cell_q);
   if (Status status = validatePack(pack); !status) throw std::runtime_error(status.error());
   return pack;
 }
