@@ -214,6 +214,22 @@ struct CrowdedRun {
   bool asleep = false;
 };
 
+/// An awake tile, and the bits of its wake mask whose tiles wait.
+using Kept = std::pair<TileCoordinate, WakeMask>;
+
+std::vector<Kept> keptWaiting(const WorldState& state, const std::vector<TileCoordinate>& waiting) {
+  std::vector<Kept> kept;
+  for (const Tile* tile : state.tiles.awake()) {
+    WakeMask bits = 0;
+    for (int bit = 0; bit < 9; ++bit)
+      if ((tile->wake_mask >> bit & 1) != 0 &&
+          std::ranges::count(waiting, TileCoordinate{tile->at.x + bit % 3 - 1, tile->at.y + bit / 3 - 1}) > 0)
+        bits = WakeMask(bits | 1 << bit);
+    kept.push_back({tile->at, bits});
+  }
+  return kept;
+}
+
 void runCrowded(const World& world, Backend& backend, std::size_t tile_limit, CrowdedRun& run) {
   backend.forget();
   run.state = initialState(world.id, world.base);
@@ -226,6 +242,7 @@ void runCrowded(const World& world, Backend& backend, std::size_t tile_limit, Cr
     ASSERT_LE(plan->active.size(), tile_limit);
     run.waiting_ticks += plan->waiting.empty() ? 0 : 1;
     run.asleep = plan->active.empty();
+    const std::vector<Kept> kept = keptWaiting(run.state, plan->waiting);
     ASSERT_TRUE(backend.submit(std::move(*plan), world.base, run.state));
     auto effect = backend.settle(run.state);
     ASSERT_TRUE(effect) << effect.error();
@@ -233,11 +250,14 @@ void runCrowded(const World& world, Backend& backend, std::size_t tile_limit, Cr
     run.state.previous_poses = std::exchange(run.state.poses, poses);
     ASSERT_TRUE(backend.collect(run.state, effect->changes));
     ASSERT_EQ(run.state.ledger.error(), 0);
+    for (const auto& [at, bits] : kept)
+      ASSERT_EQ(run.state.tiles.find(at)->wake_mask & bits, bits)
+          << "tile " << at.x << ", " << at.y << " forgot, tick " << tick;
   }
 }
 
 TEST_P(Sleep, TilesThatAreTooManyForATickWaitAndComeToRestAllTheSame) {
-  const World world(columnPack(200, 8000000, 700));
+  const World world(columnPack(200, 40000000, 2000));
   CrowdedRun run, native;
   ASSERT_NO_FATAL_FAILURE(runCrowded(world, *borrowBackend(GetParam()), 3, run));
   EXPECT_TRUE(run.asleep);
