@@ -257,34 +257,5 @@ TEST_F(GlCraterTables, HundredThousandCraters) {
   }
 }
 
-/// For a look at times: --gtest_also_run_disabled_tests. Prints, and compares the tables.
-TEST_F(GlCraterTables, DISABLED_TimesOfManyCraters) {
-  for (const int count : {1000, 100000, 1000000}) {
-    const ScenePack pack = mapPack(100000, 100000, 300000, 750000);
-    CraterSet set(pack), again(pack);
-    addRandom(set, pack, count);
-    const std::vector<Crater> craters(set.records().begin(), set.records().end());
-    ASSERT_NO_FATAL_FAILURE(update(set));  // shaders, memory
-    glFinish();
-    table_->forget();
-    const auto now = [] { return std::chrono::steady_clock::now(); };
-    const auto ms = [](auto from, auto to) { return std::chrono::duration<double, std::milli>(to - from).count(); };
-    const auto start = now();
-    again.add(craters);
-    const auto host = now();
-    ASSERT_NO_FATAL_FAILURE(update(set));
-    glFinish();
-    const auto device = now();
-    addRandom(set, pack, 10);
-    const auto added = now();
-    ASSERT_NO_FATAL_FAILURE(update(set));
-    glFinish();
-    std::printf("%d craters: host %.1f ms, device %.1f ms (%.1f MiB there), 10 more %.2f ms\n", count, ms(start, host),
-                ms(host, device), double(table_->deviceBytes()) / (1 << 20), ms(added, now()));
-    ASSERT_NO_FATAL_FAILURE(compare(set));
-    table_->forget();
-  }
-}
-
 }  // namespace
 }  // namespace spoor::test

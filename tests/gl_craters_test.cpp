@@ -418,31 +418,6 @@ TEST_P(GlCraters, WhatIsFarFromLiveGroundCostsTheDeviceNothing) {
   EXPECT_GT(changed->effect.stage_ms[int(Stage::craters)], 0);
 }
 
-/// For a look at times: --gtest_also_run_disabled_tests. A crater of R3 = 20 m on cells of 5 cm, all live.
-TEST_P(GlCraters, DISABLED_TimesOfALargeCrater) {
-  ScenePack pack = noisePack(900, 900, 3, -3000, 3000, 60000);
-  pack.cell_q = 500;
-  pack.crater_limits.radius_q = 200000;
-  pack.parameters.active_areas = 0;
-  pack.parameters.sweeps_per_tick = 0;
-  const World world(std::move(pack));
-  Simulation simulation = world.simulateOn(GetParam()), native = world.simulate({.thread_count = 2});
-  for (int tick = 0; tick < 6; ++tick) {
-    std::vector<Crater> craters;
-    if (tick >= 2) craters = {craterOf(225000, 225000, 50000, 125000, 15000, 40000, 20000, tick)};
-    const std::clock_t start = std::clock();
-    const auto expected = native.step({}, {}, craters);
-    const std::clock_t between = std::clock();
-    const auto result = simulation.step({}, {}, craters);
-    const std::clock_t end = std::clock();
-    ASSERT_NO_FATAL_FAILURE(compareResults(result, expected));
-    const auto ms = [](std::clock_t ticks) { return 1000.0 * double(ticks) / CLOCKS_PER_SEC; };
-    std::printf("tick %d: stage craters: native %.1f ms, gl %.1f ms; processor time of the tick %.1f, %.1f ms\n", tick,
-                expected->effect.stage_ms[int(Stage::craters)], result->effect.stage_ms[int(Stage::craters)],
-                ms(between - start), ms(end - between));
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(On, GlCraters, ::testing::ValuesIn(glCases()), caseName);
 
 }  // namespace

@@ -107,7 +107,8 @@ TEST(Steering, WhatCannotBeChangesNothingAndTheSessionGoesOn) {
   EXPECT_TRUE(run.changes.empty());
   EXPECT_EQ(run.hash, runSession(world, {.ticks = 8}).hash);
   EXPECT_TRUE(anyHas(run.said, "tick 2: parameters: active_areas is 0 in a world of 20000 x 20000 cells"));
-  EXPECT_TRUE(anyHas(run.said, "tick 3: the parameters stay as they were: bodies and craters meet 1"));  // 1xxxx tiles
+  EXPECT_TRUE(
+      anyHas(run.said, "tick 3: the parameters stay as they were: bodies and craters meet 1"));  // .. tens of thousands
   EXPECT_TRUE(anyHas(run.said, "tick 4: jumpFloodingVariant: goes with nearest = jump_flooding"));
 }
 
