@@ -1,7 +1,6 @@
 // Stage craters of the gl backend: cell by cell against addCraters, and sessions against native tick by tick.
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
