@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/plain_number.h"
 
 namespace spoor {
 namespace {
@@ -16,13 +15,13 @@ void forgetOld(std::deque<std::int64_t>& times_ms, std::int64_t now_ms) {
   while (!times_ms.empty() && now_ms - times_ms.front() >= kMinute_ms) times_ms.pop_front();
 }
 
-std::string metres(double units) { return plainNumber(units / rules::kUnitsPerMetre) + " m"; }
+std::string metres(std::int64_t value_q) { return metresText(value_q) + " m"; }
 
 Status checkSize(const CraterLimits& limits, const Crater& crater) {
   if (limits.request_radius_q == 0) return Error{"crater: clients may not ask for craters in this scene"};
   if (crater.outerRadius() > limits.request_radius_q)
-    return Error{fmt::format("crater: R3 = 2 R2 - R1 is {}, a client may ask for {}",
-                             metres(double(crater.outerRadius())), metres(limits.request_radius_q))};
+    return Error{fmt::format("crater: R3 = 2 R2 - R1 is {}, a client may ask for {}", metres(crater.outerRadius()),
+                             metres(limits.request_radius_q))};
   for (const auto& [name, height_q] : {std::pair("D5", crater.depth_q), std::pair("H4", crater.rim_height_q)})
     if (height_q > limits.request_height_q)
       return Error{fmt::format("crater: {} is {}, a client may ask for {}", name, metres(height_q),
@@ -42,7 +41,7 @@ Status checkDistance(const CraterLimits& limits, const Crater& crater, std::span
     if (dx <= INT32_MAX && dy <= INT32_MAX) nearest = std::min(nearest, dx * dx + dy * dy);
   }
   return Error{fmt::format("crater: its centre is {} from the nearest body, {} are allowed",
-                           nearest == UINT64_MAX ? "very far" : metres(std::round(std::sqrt(double(nearest)))),
+                           nearest == UINT64_MAX ? "very far" : metres(std::llround(std::sqrt(double(nearest)))),
                            metres(limits.request_distance_q))};
 }
 

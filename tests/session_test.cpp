@@ -85,6 +85,27 @@ class Session : public ::testing::Test {
     reading.truncated = (*reader)->truncated();
     return reading;
   }
+  /// Reads a file of the pack and one tick made by hand.
+  /// @param whole    a recorded session of the pack
+  /// @param craters  how many the tick announces
+  /// @param block    what follows that: craters, then parameters
+  Reading readWithTick(const Bytes& whole, std::uint32_t craters, const Bytes& block) {
+    ByteWriter payload;
+    payload.put(std::int32_t(1));
+    for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
+    payload.put(std::uint32_t(world_.pack.bodies.size()));
+    for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
+    payload.put(craters);
+    payload.putBytes(block);
+    ByteWriter file;
+    file.putBytes(std::span(whole).first(recordStarts(whole)[1]));
+    file.put(std::uint32_t(payload.bytes.size()));
+    file.put(std::uint8_t(2));
+    file.putBytes(payload.bytes);
+    file.put(hashBytes(payload.bytes, 2));
+    write(file.bytes);
+    return readAll();
+  }
   /// Where each record begins; the last entry is the end of the file.
   static std::vector<std::size_t> recordStarts(const Bytes& bytes) {
     std::vector<std::size_t> starts = {8};
@@ -163,24 +184,10 @@ TEST_F(Session, ParametersThatCannotBeAreReported) {
   record();
   const Bytes whole = read();
   const auto withParameters = [&](const Parameters& parameters, std::size_t size) {
-    ByteWriter payload;
-    payload.put(std::int32_t(1));
-    for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
-    payload.put(std::uint32_t(world_.pack.bodies.size()));
-    for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
-    payload.put(std::uint32_t(0));  // craters
     ByteWriter block;
     putParameters(block, parameters);
     block.bytes.resize(size);
-    payload.putBytes(block.bytes);
-    ByteWriter file;
-    file.putBytes(std::span(whole).first(recordStarts(whole)[1]));
-    file.put(std::uint32_t(payload.bytes.size()));
-    file.put(std::uint8_t(2));
-    file.putBytes(payload.bytes);
-    file.put(hashBytes(payload.bytes, 2));
-    write(file.bytes);
-    return readAll();
+    return readWithTick(whole, 0, block.bytes);
   };
   Parameters good = world_.pack.parameters;
   EXPECT_EQ(withParameters(good, kParametersBytes).error, "");
@@ -198,12 +205,6 @@ TEST_F(Session, CratersThatCannotBeAreReported) {
   record();
   const Bytes whole = read();
   const auto withCraters = [&](std::uint32_t count, const Crater& crater, std::size_t bytes) {
-    ByteWriter payload;
-    payload.put(std::int32_t(1));
-    for (int i = 0; i < 6; ++i) payload.put(std::int64_t(0));  // hash and ledger
-    payload.put(std::uint32_t(world_.pack.bodies.size()));
-    for (const Pose& pose : Script(world_.base).poses(1)) putPose(payload, pose);
-    payload.put(count);
     ByteWriter block;
     for (std::uint32_t i = 0; i < std::min(count, 4u); ++i) {
       Crater numbered = crater;
@@ -211,15 +212,7 @@ TEST_F(Session, CratersThatCannotBeAreReported) {
       putCrater(block, numbered);
     }
     block.bytes.resize(bytes);
-    payload.putBytes(block.bytes);
-    ByteWriter file;
-    file.putBytes(std::span(whole).first(recordStarts(whole)[1]));
-    file.put(std::uint32_t(payload.bytes.size()));
-    file.put(std::uint8_t(2));
-    file.putBytes(payload.bytes);
-    file.put(hashBytes(payload.bytes, 2));
-    write(file.bytes);
-    return readAll();
+    return readWithTick(whole, count, block.bytes);
   };
   Crater good;
   good.x_q = good.y_q = 10000;

@@ -47,7 +47,6 @@ Status GlStages::craters(const TickTables& tick, const TilePool& pool, const Cra
   const bool in_turns = most > rules::kCraterEntriesAtOnce;
   if (Status status = crater_sums_.reserve(in_turns ? cells * 2 * std::int64_t(sizeof(rules::CraterSum)) : 0); !status)
     return status;
-  bindTable(rules::kBindTick, tick.head);
   bindTable(rules::kBindCraterTiles, tick.craters.range);
   crater_changes_.bind(rules::kBindCraterChanges);
   crater_sums_.bind(rules::kBindCraterSums);

@@ -10,12 +10,7 @@
 namespace spoor {
 namespace {
 
-std::string metres(std::int64_t value_q) {
-  std::string text = std::to_string(double(value_q) / rules::kUnitsPerMetre);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text + " m";
-}
+std::string metres(std::int64_t value_q) { return metresText(value_q) + " m"; }
 
 }  // namespace
 
@@ -95,6 +90,13 @@ std::int64_t hashCellsOf(const ScenePack& pack, const Crater& crater) {
   };
   return std::max<std::int64_t>(count(crater.x_q, pack.width_cells), 0) *
          std::max<std::int64_t>(count(crater.y_q, pack.height_cells), 0);
+}
+
+std::string metresText(std::int64_t value_q) {
+  std::string text = std::to_string(double(value_q) / rules::kUnitsPerMetre);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 void putCrater(ByteWriter& writer, const Crater& crater) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "shaders/rules/crater.h"
 #include "shared/base/bytes.h"
@@ -63,6 +64,9 @@ struct CraterLimits {
 
 /// In how many cells of the spatial hash a valid crater is.
 std::int64_t hashCellsOf(const ScenePack& pack, const Crater& crater);
+
+/// A length in metres for messages, without the unit: "17.5".
+std::string metresText(std::int64_t value_q);
 
 void putCrater(ByteWriter& writer, const Crater& crater);
 /// Reads what putCrater wrote; values are not checked (validateCrater).

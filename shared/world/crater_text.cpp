@@ -32,12 +32,6 @@ std::string quoted(std::string_view text) {
   return "'" + result + (text.size() > 40 ? "...'" : "'");
 }
 
-std::string metres(std::int32_t value_q) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", double(value_q) / rules::kUnitsPerMetre);
-  return text;
-}
-
 std::optional<double> numberIn(std::string_view text, double lowest, double highest) {
   double value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -109,9 +103,9 @@ Result<TimedCrater> parseTimedCrater(std::string_view text) {
 }
 
 std::string describeCrater(const Crater& crater) {
-  std::string text = "(" + metres(crater.x_q) + ", " + metres(crater.y_q) + ") m, R1 " + metres(crater.inner_radius_q) +
-                     " m, R2 " + metres(crater.crest_radius_q) + " m, D5 " + metres(crater.depth_q) + " m, H4 " +
-                     metres(crater.rim_height_q) + " m";
+  std::string text = "(" + metresText(crater.x_q) + ", " + metresText(crater.y_q) + ") m, R1 " +
+                     metresText(crater.inner_radius_q) + " m, R2 " + metresText(crater.crest_radius_q) + " m, D5 " +
+                     metresText(crater.depth_q) + " m, H4 " + metresText(crater.rim_height_q) + " m";
   if (crater.noise_q16 == 0) return text;
   char noise[32];
   std::snprintf(noise, sizeof noise, ", noise %.3g", crater.noise_q16 / 65536.0);
