@@ -58,7 +58,7 @@ struct Builder {
     std::vector<wire::Pose> poses;
     poses.reserve(message.poses.size());
     for (const Pose& pose : message.poses) {
-      poses.emplace_back(pose.x_q, pose.y_q, pose.z_q, pose.yaw, pose.pitch, pose.roll, pose.spin);
+      poses.emplace_back(pose.x_q, pose.y_q, pose.z_q, pose.yaw, pose.pitch, pose.roll, pose.spin, pose.scale_q16);
     }
     const auto pose_vector = out.CreateVectorOfStructs(poses);
     const auto tiles = out.CreateVector(message.tiles);
@@ -74,7 +74,14 @@ struct Builder {
       for (const Crater& crater : message.craters) putCrater(writer, crater);
       craters = out.CreateVector(writer.bytes);
     }
-    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles, parameters, craters));
+    flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> snowfalls;
+    if (!message.snowfalls.empty()) {
+      ByteWriter writer;
+      for (const Snowfall& snowfall : message.snowfalls) putSnowfall(writer, snowfall);
+      snowfalls = out.CreateVector(writer.bytes);
+    }
+    out.Finish(wire::CreateTickUpdate(out, message.tick, message.state_hash, pose_vector, tiles, parameters, craters,
+                                      snowfalls));
   }
   void operator()(const Confirm& message) { out.Finish(wire::CreateConfirm(out, message.tick, message.state_hash)); }
   void operator()(const Goodbye& message) {
@@ -153,9 +160,9 @@ Result<Message> convert(const wire::TickUpdate& table) {
   if (table.poses()->size() > kPosesLimit) return invalid(kind, "too many poses");
   TickUpdate update{table.tick(), table.state_hash(), {}, {table.tiles()->begin(), table.tiles()->end()}};
   if (const auto* bytes = table.parameters()) {
-    if (bytes->size() != kParametersBytes) return invalid(kind, "parameters of a wrong size");
     ByteReader reader({bytes->data(), bytes->size()});
     update.parameters = getParameters(reader);
+    if (reader.failed() || reader.left() > 0) return invalid(kind, "parameters of a wrong size");
     if (!validateParameters(*update.parameters)) return invalid(kind, "a parameter out of range");
   }
   if (const auto* bytes = table.craters()) {
@@ -164,10 +171,16 @@ Result<Message> convert(const wire::TickUpdate& table) {
     ByteReader reader({bytes->data(), bytes->size()});
     while (reader.left() > 0) update.craters.push_back(getCrater(reader));
   }
+  if (const auto* bytes = table.snowfalls()) {
+    if (bytes->size() % kSnowfallBytes != 0 || bytes->size() > kSnowfallsLimit * kSnowfallBytes)
+      return invalid(kind, "snowfalls of a wrong size");
+    ByteReader reader({bytes->data(), bytes->size()});
+    while (reader.left() > 0) update.snowfalls.push_back(getSnowfall(reader));
+  }
   update.poses.reserve(table.poses()->size());
   for (const wire::Pose* pose : *table.poses()) {
-    update.poses.push_back(
-        {pose->x_q(), pose->y_q(), pose->z_q(), pose->yaw(), pose->pitch(), pose->roll(), pose->spin()});
+    update.poses.push_back({pose->x_q(), pose->y_q(), pose->z_q(), pose->yaw(), pose->pitch(), pose->roll(),
+                            pose->spin(), pose->scale_q16()});
   }
   return Message(std::move(update));
 }

@@ -15,7 +15,7 @@
 namespace spoor {
 
 /// Raised whenever a message, a layout inside one or the rule of the state hash changes.
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 inline constexpr std::size_t kNameLimit = 64;     // characters of a client's name, at least 1, printable ASCII
 inline constexpr std::size_t kReasonLimit = 400;  // characters of a reason, printable ASCII

@@ -32,7 +32,7 @@ Status applyPreset(double value, std::int32_t, NamedSettings& settings) {
   p.slopes = slopes[int(value)];
   p.nearest = NearestSearch::jump_flooding;
   p.metric = Metric::euclidean;
-  p.compaction_limit_q16 = 0;
+  p.materials[0].compaction_limit_q16 = 0;
   p.capacity_rounds = 1;
   p.obstacle_threshold_q = 1000;
   return {};
@@ -65,14 +65,15 @@ std::optional<double> readVariant(const NamedSettings& settings, std::int32_t) {
 }
 
 Status applySlope(double value, std::int32_t cell_q, NamedSettings& settings) {
-  settings.parameters.slope_threshold_q = slopeThreshold(value, cell_q);
-  settings.parameters.diagonal_threshold_q = diagonalThreshold(settings.parameters.slope_threshold_q);
+  settings.parameters.materials[0].slope_threshold_q = slopeThreshold(value, cell_q);
+  settings.parameters.materials[0].diagonal_threshold_q =
+      diagonalThreshold(settings.parameters.materials[0].slope_threshold_q);
   return {};
 }
 
 /// In the middle of the angles that give the threshold.
 std::optional<double> readSlope(const NamedSettings& settings, std::int32_t cell_q) {
-  const std::int32_t threshold = settings.parameters.slope_threshold_q;
+  const std::int32_t threshold = settings.parameters.materials[0].slope_threshold_q;
   if (threshold == kNeverSteep) return std::numbers::pi / 2 / metresOf(cell_q) * (1 + 1e-12);
   if (threshold == 0) return 0;
   return std::atan((double(threshold) + 0.5) / rules::kUnitsPerMetre) / metresOf(cell_q);
@@ -132,8 +133,8 @@ std::vector<NamedParameter> makeList() {
       {"heightmapSize", integer, 1, kWorldCellsLimit, "cells", {}, kWorldIsFixed, SPOOR_FIELD(heightmap_size)},
       {"numVerticesPerRow", integer, 0, 4096, "patches", {}, kDrawingIsFixed, SPOOR_FIELD(patches_per_row)},
       {"numIterationsBlurNormals", integer, 0, 16, "", {}, kDrawingIsFixed, SPOOR_FIELD(normal_blur_passes)},
-      {"compression", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.compression_q16)},
-      {"roughness", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.roughness_q16)},
+      {"compression", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.materials[0].compression_q16)},
+      {"roughness", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.materials[0].roughness_q16)},
       {"slopeThreshold", number, 0, 20000, "radians per metre", {}, "", applySlope, readSlope},
       {"numIterationsDisplaceMaterialToContour", integer, 0, kIterationsLimit, "", {}, "",
        SPOOR_FIELD(parameters.displace_iterations)},
@@ -148,7 +149,7 @@ std::vector<NamedParameter> makeList() {
       {"jumpFloodingVariant", choice, 0, 4, "", {"JFA", "JFA+1", "JFA+2", "1+JFA", "JFA^2"}, "", applyVariant, readVariant},
       {"metric", choice, 0, 2, "", {"euclidean", "manhattan", "chebyshev"}, "", SPOOR_FIELD(parameters.metric)},
       {"slopes", choice, 0, 3, "", {"exchange", "flux", "interleaved", "scatter"}, "", SPOOR_FIELD(parameters.slopes)},
-      {"compactionLimit", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.compaction_limit_q16)},
+      {"compactionLimit", number, 0, 1, "", {}, "", SPOOR_SHARE(parameters.materials[0].compaction_limit_q16)},
       {"spreadCells", integer, 1, kSpreadCellsLimit, "cells", {}, "", SPOOR_FIELD(parameters.spread_cells)},
       {"capacityRounds", integer, 1, kCapacityRoundsLimit, "", {}, "", SPOOR_FIELD(parameters.capacity_rounds)},
   };

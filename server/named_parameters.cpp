@@ -39,12 +39,12 @@ std::string valueText(const NamedParameter& parameter, std::int32_t cell_q, cons
   if (parameter.kind == NamedKind::integer) return std::to_string(std::int64_t(*value));
   const Parameters& p = settings.parameters;
   const bool is_slope = parameter.name == kSlopeName;
-  if (is_slope && p.slope_threshold_q == kNeverSteep) return "(no slope is too steep)";
+  if (is_slope && p.materials[0].slope_threshold_q == kNeverSteep) return "(no slope is too steep)";
   std::string text = shortestText(parameter, *value, cell_q, settings);
   if (!is_slope) return text;
-  text += " (" + plainNumber(metresOf(p.slope_threshold_q)) + " m rest";
-  if (p.diagonal_threshold_q != diagonalThreshold(p.slope_threshold_q))
-    text += ", diagonally " + plainNumber(metresOf(p.diagonal_threshold_q)) + " m";
+  text += " (" + plainNumber(metresOf(p.materials[0].slope_threshold_q)) + " m rest";
+  if (p.materials[0].diagonal_threshold_q != diagonalThreshold(p.materials[0].slope_threshold_q))
+    text += ", diagonally " + plainNumber(metresOf(p.materials[0].diagonal_threshold_q)) + " m";
   return text + ")";
 }
 
@@ -144,7 +144,7 @@ std::optional<NamedError> applyNamed(std::span<const NamedValue> values, std::in
     if (std::ranges::count_if(values, isThis) > 1) return NamedError{&parameter, "given twice"};
     if (Status status = parameter.apply(found->value, cell_q, result); !status)
       return NamedError{&parameter, status.error()};
-    if (parameter.name == kSlopeName && result.parameters.slope_threshold_q == kNeverSteep)
+    if (parameter.name == kSlopeName && result.parameters.materials[0].slope_threshold_q == kNeverSteep)
       new_notes.push_back("slopeThreshold: " + plainNumber(found->value) + " per metre over cells of " +
                           plainNumber(metresOf(cell_q)) + " m is as good as upright: no slope is ever too steep");
   }

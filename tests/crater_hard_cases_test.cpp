@@ -77,7 +77,7 @@ class CraterHardCase : public OnEveryBackend {
 
 TEST_P(CraterHardCase, AThousandOnOneSpotInOneTickReachBedrockAndNoFurther) {
   ScenePack pack = levelPack(70, 66);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = kNeverSteep;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = kNeverSteep;
   addBody(pack, boxMesh(2000, 2000, 2000), 5000, 5000, 300);
   start(std::move(pack));
   ASSERT_NO_FATAL_FAILURE(step());
@@ -96,7 +96,7 @@ TEST_P(CraterHardCase, AThousandOnOneSpotInOneTickReachBedrockAndNoFurther) {
 
 TEST_P(CraterHardCase, AThousandOnOneSpotOneAfterAnotherEqualThoseOfOneTick) {
   ScenePack pack = levelPack(70, 66);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = kNeverSteep;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = kNeverSteep;
   addBody(pack, boxMesh(2000, 2000, 2000), 5000, 5000, 300);
   const World world(std::move(pack));
   const std::vector<Crater> salvo(GetParam().slow() ? 100 : 1000, craterAt(40500, 30500, 2500, 400, 110));
@@ -121,7 +121,7 @@ TEST_P(CraterHardCase, AThousandOnOneSpotOneAfterAnotherEqualThoseOfOneTick) {
 
 TEST_P(CraterHardCase, TwoAtTheSameTickAndPlaceAreTwiceAsDeepWithARimOnce) {
   ScenePack pack = levelPack(70, 66);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = kNeverSteep;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = kNeverSteep;
   addBody(pack, boxMesh(2000, 2000, 2000), 5000, 5000, 300);
   start(std::move(pack));
   ASSERT_NO_FATAL_FAILURE(step());
@@ -245,7 +245,7 @@ TEST_P(CraterHardCase, OverTheBorderAndAtTheHeightLimit) {
   std::vector<std::int32_t> ground(70 * 66, (1 << 29) + (1 << 28) - 1);
   ScenePack pack = groundPack(70, 66, ground, (1 << 28) - 1);
   pack.crater_limits = {.radius_q = 60000, .hash_cell_q = 20000};
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = kNeverSteep;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = kNeverSteep;
   addBody(pack, boxMesh(2000, 2000, 2000), 35000, 33000, 300);
   start(std::move(pack));
   ASSERT_NO_FATAL_FAILURE(step());

@@ -24,7 +24,7 @@ ScenePack drivenPack() {
   ScenePack pack = noisePack(650, 370, 21, -3000, 3000, 9000);
   pack.crater_limits = {.radius_q = 30000, .hash_cell_q = 11000};
   pack.parameters.sweeps_per_tick = 2;
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = kNeverSteep;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = kNeverSteep;
   addBody(pack, boxMesh(9000, 6000, 4000), 70000, 60000, 700);
   addBody(pack, wedgeMesh(7000, 9000, 5000), 190000, 130000, 1500);
   addBody(pack, tetrahedronMesh(6000), 100000, 60000, 2000);

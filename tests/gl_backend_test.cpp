@@ -137,7 +137,7 @@ void checkHeightLimit(const BackendCase& backend_case, int width, int height, in
   std::vector<std::int32_t> ground;
   for (int i = 0; i < width * height; ++i) ground.push_back(kHighest - i * 7919 % 1000);
   ScenePack pack = groundPack(width, height, ground, kSoil);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 1;
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = 1;
   pack.parameters.obstacle_threshold_q = threshold;
   coverAllBut(pack, 4);
   const World world(std::move(pack));
@@ -246,8 +246,8 @@ struct RoundTrip {
   static ScenePack makePack() {
     ScenePack pack = noisePack(256, 60, 12, -2000, 2000, 20000);
     pack.parameters.sweeps_per_tick = 2;
-    pack.parameters.slope_threshold_q = 3000;  // the trail comes to rest soon
-    pack.parameters.diagonal_threshold_q = 4242;
+    pack.parameters.materials[0].slope_threshold_q = 3000;  // the trail comes to rest soon
+    pack.parameters.materials[0].diagonal_threshold_q = 4242;
     addBody(pack, boxMesh(9000, 20000, 5000), 30000, 30000, 800);
     return pack;
   }
@@ -341,8 +341,8 @@ TEST_P(GlBackends, OverlappedTicksInASmallPoolEqualTicksOneByOne) {
 TEST_P(GlBackends, CompactionThatBeginsAndEndsInOverlappedTicksInASmallPool) {
   const RoundTrip trip;
   Parameters compacting = trip.world.pack.parameters, not_compacting = compacting;
-  compacting.compression_q16 = kOneQ16 / 3;
-  compacting.compaction_limit_q16 = kOneQ16 / 4;
+  compacting.materials[0].compression_q16 = kOneQ16 / 3;
+  compacting.materials[0].compaction_limit_q16 = kOneQ16 / 4;
   const Changes changes = {{1, compacting}, {3, not_compacting}, {4, compacting}};
   for (const int pool_tiles : {2, 1 << 16}) {
     SCOPED_TRACE(std::to_string(pool_tiles) + " tiles");

@@ -209,7 +209,7 @@ TEST_P(GlCraters, SessionsEqualNative) {
     addBody(pack, boxMesh(9000, 12000, 5000), 50000, 60000, 800);
     addBody(pack, wedgeMesh(9000, 12000, 9000), 110000, 60000, 2000);
     pack.parameters.slopes = SlopeRule(seed % 4);
-    if (seed % 3 == 0) pack.parameters.compression_q16 = kOneQ16 / 3;
+    if (seed % 3 == 0) pack.parameters.materials[0].compression_q16 = kOneQ16 / 3;
     const World world(std::move(pack));
     Simulation simulation = world.simulateOn(GetParam()), native = world.simulate();
     ASSERT_NO_FATAL_FAILURE(compareSession(simulation, native, wander(world, seed, 8, 5)));
@@ -236,8 +236,8 @@ TEST_P(GlCraters, CompactionThatBeginsAndEndsAmongCratersInASmallPool) {
     const World world(std::move(pack));
     Session session = wander(world, 8, 9, 3);
     Parameters compacting = world.pack.parameters;
-    compacting.compression_q16 = kOneQ16 / 3;
-    compacting.compaction_limit_q16 = kOneQ16 / 4;
+    compacting.materials[0].compression_q16 = kOneQ16 / 3;
+    compacting.materials[0].compaction_limit_q16 = kOneQ16 / 4;
     session.changes = {{1, compacting}, {4, world.pack.parameters}, {6, compacting}};
     GlOptions options = glOptionsOf(GetParam());
     options.pool_tiles = pool_tiles;
@@ -249,7 +249,8 @@ TEST_P(GlCraters, CompactionThatBeginsAndEndsAmongCratersInASmallPool) {
 
 TEST_P(GlCraters, TilesThatLeaveTheirSlotsBetweenCratersComeBackAsTheyWere) {
   ScenePack pack = craterPack(448, 60, 12, 20000);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 30000;  // all comes to rest at once
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q =
+      30000;  // all comes to rest at once
   pack.crater_limits.radius_q = 9000;
   addBody(pack, boxMesh(9000, 20000, 5000), 30000, 30000, 800);
   const World world(std::move(pack));
@@ -271,8 +272,8 @@ TEST_P(GlCraters, TilesThatLeaveTheirSlotsBetweenCratersComeBackAsTheyWere) {
 
 TEST_P(GlCraters, CratersOverTheBorderAndSoilThatMovesAfterwards) {
   ScenePack pack = craterPack(100, 90, 9);
-  pack.parameters.slope_threshold_q = 300;
-  pack.parameters.diagonal_threshold_q = 424;
+  pack.parameters.materials[0].slope_threshold_q = 300;
+  pack.parameters.materials[0].diagonal_threshold_q = 424;
   const World world(std::move(pack));
   Parameters all = world.pack.parameters;
   all.active_areas = 0;
@@ -295,7 +296,7 @@ TEST_P(GlCraters, RoomEndsAtTheHeightLimitWhereACraterLiftsTheGround) {
     std::vector<std::int32_t> ground;
     for (int i = 0; i < 64 * 64; ++i) ground.push_back(kHighest - i * 7919 % 1000);
     ScenePack pack = groundPack(64, 64, ground, kSoil);
-    pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 1;
+    pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = 1;
     pack.parameters.obstacle_threshold_q = threshold;
     pack.crater_limits.radius_q = 100000;
     const World world(std::move(pack));
@@ -327,7 +328,7 @@ TEST_P(GlCraters, SumsOfATileMayBeLargerThan32Bits) {
 
 TEST_P(GlCraters, ASessionGoesFromNativeToGlAndBack) {
   ScenePack pack = craterPack(170, 140, 31);
-  pack.parameters.compression_q16 = kOneQ16 / 5;
+  pack.parameters.materials[0].compression_q16 = kOneQ16 / 5;
   addBody(pack, boxMesh(9000, 12000, 5000), 50000, 60000, 800);
   const World world(std::move(pack));
   const Session session = wander(world, 6, 12, 4);

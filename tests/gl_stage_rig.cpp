@@ -140,7 +140,7 @@ class GlStageRig final : public StageRig {
     penetrated_ = false;
   }
 
-  bool compacts() const { return plan_.parameters.compression_q16 > 0; }
+  bool compacts() const { return plan_.parameters.materials[0].compression_q16 > 0; }
 
   void restart(const Cells& heights, const Cells& undersides, const Cells& compacted) {
     begin({});

@@ -39,8 +39,8 @@ ScenePack withWay(ScenePack pack, const Way& way) {
   parameters.nearest = way.nearest;
   parameters.metric = way.metric;
   parameters.slopes = way.slopes;
-  parameters.compression_q16 = std::int32_t(way.compression * kOneQ16);
-  parameters.compaction_limit_q16 = kOneQ16 / 2;
+  parameters.materials[0].compression_q16 = std::int32_t(way.compression * kOneQ16);
+  parameters.materials[0].compaction_limit_q16 = kOneQ16 / 2;
   parameters.spread_cells = 5;
   return pack;
 }
@@ -100,7 +100,7 @@ TEST_P(HardCase, WithoutAFreeCellAnywhereNothingMovesAndItIsSaid) {
   for (const Way& way : kWays) {
     SCOPED_TRACE(way.name);
     ScenePack changed = withWay(pack, way);
-    changed.parameters.compression_q16 = 0;
+    changed.parameters.materials[0].compression_q16 = 0;
     const World world(std::move(changed));
     ASSERT_NO_FATAL_FAILURE(check(world, standing(world.pack, 1)));
     EXPECT_EQ(kept_back_, 20 * 15 * 500);
@@ -166,13 +166,16 @@ TEST_P(HardCase, ThresholdsRoughnessCompressionAndIterationsAtTheirEnds) {
   addBody(pack, boxMesh(8000, 6000, 5000), 12000, 14000, 600);
   const auto ticks = straight(pack, GetParam().slow() ? 2 : 4, 700, 300);
   std::vector<std::pair<const char*, void (*)(Parameters&)>> ends = {
-      {"threshold 0", [](Parameters& p) { p.slope_threshold_q = p.diagonal_threshold_q = 0; }},
-      {"threshold never", [](Parameters& p) { p.slope_threshold_q = p.diagonal_threshold_q = kNeverSteep; }},
-      {"roughness 0", [](Parameters& p) { p.roughness_q16 = 0; }},
-      {"roughness 1", [](Parameters& p) { p.roughness_q16 = kOneQ16; }},
-      {"compression 0", [](Parameters& p) { p.compression_q16 = 0; }},
-      {"compression 1", [](Parameters& p) { p.compression_q16 = kOneQ16; }},
-      {"compression 1 without memory", [](Parameters& p) { p.compression_q16 = kOneQ16, p.compaction_limit_q16 = 0; }},
+      {"threshold 0",
+       [](Parameters& p) { p.materials[0].slope_threshold_q = p.materials[0].diagonal_threshold_q = 0; }},
+      {"threshold never",
+       [](Parameters& p) { p.materials[0].slope_threshold_q = p.materials[0].diagonal_threshold_q = kNeverSteep; }},
+      {"roughness 0", [](Parameters& p) { p.materials[0].roughness_q16 = 0; }},
+      {"roughness 1", [](Parameters& p) { p.materials[0].roughness_q16 = kOneQ16; }},
+      {"compression 0", [](Parameters& p) { p.materials[0].compression_q16 = 0; }},
+      {"compression 1", [](Parameters& p) { p.materials[0].compression_q16 = kOneQ16; }},
+      {"compression 1 without memory",
+       [](Parameters& p) { p.materials[0].compression_q16 = kOneQ16, p.materials[0].compaction_limit_q16 = 0; }},
       {"0 iterations", [](Parameters& p) { p.displace_iterations = p.sweeps_per_tick = 0; }}};
   for (const auto& [name, change] : ends) {
     SCOPED_TRACE(name);
@@ -202,7 +205,7 @@ TEST_P(HardCase, ASpikeAtTheHeightLimitBesideAHole) {
   for (const SlopeRule rule : {SlopeRule::exchange, SlopeRule::flux, SlopeRule::interleaved, SlopeRule::scatter})
     for (const int threshold : {1, 700}) {
       pack.parameters.slopes = rule;
-      pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = threshold;
+      pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q = threshold;
       const World world{ScenePack(pack)};
       const auto rig = makeStageRig(GetParam(), world);
       Cells height(kColumns * kRows, 0);
@@ -233,8 +236,8 @@ TEST_P(HardCase, ACheckerboardAndOneUnitOfNoise) {
       for (const int threshold : {0, 1, 300}) {
         ScenePack pack = groundPack(kColumns, kRows, ground, 10000);
         pack.parameters.slopes = rule;
-        pack.parameters.slope_threshold_q = threshold;
-        pack.parameters.diagonal_threshold_q = threshold * 14 / 10;
+        pack.parameters.materials[0].slope_threshold_q = threshold;
+        pack.parameters.materials[0].diagonal_threshold_q = threshold * 14 / 10;
         const World world(std::move(pack));
         const auto rig = makeStageRig(GetParam(), world);
         DenseWorld dense = denseCopy(*rig);
@@ -247,8 +250,8 @@ TEST_P(HardCase, ACheckerboardAndOneUnitOfNoise) {
 TEST_P(HardCase, ThresholdsOfOneTwoAndThreeUnitsComeToRest) {
   for (const int threshold : {1, 2, 3}) {
     ScenePack pack = flatPack(33, 35);
-    pack.parameters.slope_threshold_q = threshold;
-    pack.parameters.diagonal_threshold_q = std::max(1, threshold * 14 / 10);
+    pack.parameters.materials[0].slope_threshold_q = threshold;
+    pack.parameters.materials[0].diagonal_threshold_q = std::max(1, threshold * 14 / 10);
     pack.parameters.sweeps_per_tick = 64;
     addBody(pack, boxMesh(3000, 3000, 3000), 16000, 17000, 40);
     const World world(std::move(pack));
@@ -308,8 +311,8 @@ double shareAhead(const BackendCase& backend_case, int q_per_tick, int sweeps_pe
   ScenePack pack = flatPack(128, 64);
   pack.cell_q = 500;
   pack.parameters.sweeps_per_tick = sweeps_per_tick;
-  pack.parameters.slope_threshold_q = 350;
-  pack.parameters.diagonal_threshold_q = 494;
+  pack.parameters.materials[0].slope_threshold_q = 350;
+  pack.parameters.materials[0].diagonal_threshold_q = 494;
   addBody(pack, bladeMesh(16000, 6000), 15000, 16000, 600);
   const World world(std::move(pack));
   Simulation simulation = world.simulateOn(backend_case);

@@ -98,8 +98,8 @@ TEST_F(Import, HandComputedSceneHasItsIntegers) {
   EXPECT_EQ(pack.cell_q, 500);
   EXPECT_EQ(pack.soil_depth_q, 6000);
   EXPECT_EQ(pack.parameters.obstacle_threshold_q, 20);
-  EXPECT_EQ(pack.parameters.slope_threshold_q, 500);     // tan 45 * 500
-  EXPECT_EQ(pack.parameters.diagonal_threshold_q, 707);  // floor(500 * sqrt 2)
+  EXPECT_EQ(pack.parameters.materials[0].slope_threshold_q, 500);     // tan 45 * 500
+  EXPECT_EQ(pack.parameters.materials[0].diagonal_threshold_q, 707);  // floor(500 * sqrt 2)
   EXPECT_EQ(pack.parameters.sweeps_per_tick, 4);
   EXPECT_EQ(pack.noise.lattice_step_q32, 21474836);  // 0.1 * 0.05 * 2^32
   EXPECT_EQ(pack.noise.seed, 9u);
@@ -185,7 +185,7 @@ TEST_F(Import, ConvoyIsGentlerThanItsAngleOfReposeAndPassesItsMiddle) {
     }
   }
   EXPECT_GT(steepest, 0);
-  EXPECT_LT(steepest * 2, scene->pack.parameters.slope_threshold_q);
+  EXPECT_LT(steepest * 2, scene->pack.parameters.materials[0].slope_threshold_q);
   for (const Path& path : scene->pack.paths) {
     EXPECT_TRUE(std::any_of(path.waypoints.begin(), path.waypoints.end(), [](const Waypoint& waypoint) {
       return std::abs(waypoint.x_q - 510000) < 5000 && std::abs(waypoint.y_q - 510000) < 5000;
@@ -251,8 +251,8 @@ TEST_F(Import, TinySlopeThresholdIsRoundedUpToOneWithANote) {
   const Result<ImportedScene> scene =
       importScene(write("scene.toml", replaced(handScene(), "repose_deg = 45", "repose_deg = 0")));
   ASSERT_TRUE(scene) << scene.error();
-  EXPECT_EQ(scene->pack.parameters.slope_threshold_q, 1);
-  EXPECT_EQ(scene->pack.parameters.diagonal_threshold_q, 1);
+  EXPECT_EQ(scene->pack.parameters.materials[0].slope_threshold_q, 1);
+  EXPECT_EQ(scene->pack.parameters.materials[0].diagonal_threshold_q, 1);
   EXPECT_TRUE(anyContains(scene->notes, "rounded up"));
 }
 

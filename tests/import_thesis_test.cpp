@@ -36,8 +36,8 @@ Parameters parametersOf(const Result<ImportedScene>& scene) {
 Parameters defaults() {
   Parameters parameters;
   parameters.obstacle_threshold_q = 10;
-  parameters.slope_threshold_q = 350;  // tan 35 * 500
-  parameters.diagonal_threshold_q = 495;
+  parameters.materials[0].slope_threshold_q = 350;  // tan 35 * 500
+  parameters.materials[0].diagonal_threshold_q = 495;
   return parameters;
 }
 
@@ -68,14 +68,14 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
   } cases[] = {
       {"numVerticesPerRow = 64", [](ScenePack& p) { p.patches_per_row = 64; }},
       {"numIterationsBlurNormals = 3", [](ScenePack& p) { p.normal_blur_passes = 3; }},
-      {"compression = 0.9", [](ScenePack& p) { p.parameters.compression_q16 = 58982; }},  // 58982.4
-      {"compression = 1e-9", [](ScenePack& p) { p.parameters.compression_q16 = 1; }},     // not 0
-      {"roughness = 0", [](ScenePack& p) { p.parameters.roughness_q16 = 0; }},
-      {"roughness = 0.6", [](ScenePack& p) { p.parameters.roughness_q16 = 39322; }},  // 39321.6
+      {"compression = 0.9", [](ScenePack& p) { p.parameters.materials[0].compression_q16 = 58982; }},  // 58982.4
+      {"compression = 1e-9", [](ScenePack& p) { p.parameters.materials[0].compression_q16 = 1; }},     // not 0
+      {"roughness = 0", [](ScenePack& p) { p.parameters.materials[0].roughness_q16 = 0; }},
+      {"roughness = 0.6", [](ScenePack& p) { p.parameters.materials[0].roughness_q16 = 39322; }},  // 39321.6
       {"slopeThreshold = 1.9",
        [](ScenePack& p) {
-         p.parameters.slope_threshold_q = 952;      // 10^4 tan(1.9 * 0.05) = 952.87
-         p.parameters.diagonal_threshold_q = 1346;  // 952 sqrt 2 = 1346.3
+         p.parameters.materials[0].slope_threshold_q = 952;      // 10^4 tan(1.9 * 0.05) = 952.87
+         p.parameters.materials[0].diagonal_threshold_q = 1346;  // 952 sqrt 2 = 1346.3
        }},
       {"numIterationsDisplaceMaterialToContour = 7", [](ScenePack& p) { p.parameters.displace_iterations = 7; }},
       {"numIterationsEvenOutSlopes = 1000", [](ScenePack& p) { p.parameters.sweeps_per_tick = 1000; }},
@@ -102,7 +102,7 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
       {"slopes = \"flux\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::flux; }},
       {"slopes = \"interleaved\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::interleaved; }},
       {"slopes = \"scatter\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::scatter; }},
-      {"compactionLimit = 0.25", [](ScenePack& p) { p.parameters.compaction_limit_q16 = 16384; }},
+      {"compactionLimit = 0.25", [](ScenePack& p) { p.parameters.materials[0].compaction_limit_q16 = 16384; }},
       {"spreadCells = 64", [](ScenePack& p) { p.parameters.spread_cells = 64; }},
       {"capacityRounds = 1", [](ScenePack& p) { p.parameters.capacity_rounds = 1; }},
       {"activeAreas = false", [](ScenePack& p) { p.parameters.active_areas = 0; }},
@@ -188,7 +188,7 @@ TEST_F(Thesis, KeysBesideAPresetOverrideIt) {
   EXPECT_EQ(own.slopes, SlopeRule::flux);
   EXPECT_EQ(own.nearest, NearestSearch::jump_flooding_plus_2);
   EXPECT_EQ(own.capacity_rounds, 3);
-  EXPECT_EQ(own.compaction_limit_q16, 32768);
+  EXPECT_EQ(own.materials[0].compaction_limit_q16, 32768);
   EXPECT_EQ(own.metric, Metric::chebyshev);
   EXPECT_EQ(own.obstacle_threshold_q, 7);
   const Parameters soil = parametersOf(importScene(
@@ -262,12 +262,12 @@ TEST_F(Thesis, AThresholdThatNoSlopeExceedsIsNoted) {
   };
   const auto steep = withSlope("31.4");  // times 0.05 m: 1.5700, a right angle is 1.5708
   ASSERT_TRUE(steep) << steep.error();
-  EXPECT_EQ(steep->pack.parameters.slope_threshold_q, 12557655);  // 10^4 tan(1.57) = 12557655.9
+  EXPECT_EQ(steep->pack.parameters.materials[0].slope_threshold_q, 12557655);  // 10^4 tan(1.57) = 12557655.9
   EXPECT_TRUE(steep->notes.empty());
   const auto never = withSlope("31.5");
   ASSERT_TRUE(never) << never.error();
-  EXPECT_EQ(never->pack.parameters.slope_threshold_q, kNeverSteep);
-  EXPECT_EQ(never->pack.parameters.diagonal_threshold_q, kNeverSteep);
+  EXPECT_EQ(never->pack.parameters.materials[0].slope_threshold_q, kNeverSteep);
+  EXPECT_EQ(never->pack.parameters.materials[0].diagonal_threshold_q, kNeverSteep);
   ASSERT_EQ(never->notes.size(), 1u);
   EXPECT_TRUE(contains(never->notes[0], "thesis.slopeThreshold: 31.5 per metre over cells of 0.05 m"))
       << never->notes[0];
@@ -317,8 +317,8 @@ TEST_F(Thesis, AssignmentsAreReadLikeTheTable) {
   EXPECT_EQ(compiled("nearest=jump_flooding").nearest, NearestSearch::jump_flooding);
   EXPECT_EQ(compiled("preset=\"thesis-ssbo\"").capacity_rounds, 1);
   EXPECT_EQ(compiled("activeAreas=false").active_areas, 0);
-  EXPECT_EQ(compiled("slopeThreshold=1.9").slope_threshold_q, 952);
-  EXPECT_EQ(compiled("slopeThreshold=1.9", 1000).slope_threshold_q, 1923);
+  EXPECT_EQ(compiled("slopeThreshold=1.9").materials[0].slope_threshold_q, 952);
+  EXPECT_EQ(compiled("slopeThreshold=1.9", 1000).materials[0].slope_threshold_q, 1923);
   const struct {
     const char *text, *part;
   } wrong[] = {
@@ -396,11 +396,11 @@ TEST_F(Thesis, DescriptionsGiveTheSameParametersAgain) {
     parameters.active_areas = std::uint8_t(random() % 2);
     parameters.displace_iterations = std::int32_t(random() % 1001);
     parameters.sweeps_per_tick = std::int32_t(random() % 1001);
-    parameters.compression_q16 = std::int32_t(random() % 65537);
-    parameters.compaction_limit_q16 = std::int32_t(random() % 65537);
-    parameters.roughness_q16 = std::int32_t(random() % 65537);
-    parameters.slope_threshold_q = std::int32_t(random() % (1u << (random() % 24)));
-    parameters.diagonal_threshold_q = diagonalThreshold(parameters.slope_threshold_q);
+    parameters.materials[0].compression_q16 = std::int32_t(random() % 65537);
+    parameters.materials[0].compaction_limit_q16 = std::int32_t(random() % 65537);
+    parameters.materials[0].roughness_q16 = std::int32_t(random() % 65537);
+    parameters.materials[0].slope_threshold_q = std::int32_t(random() % (1u << (random() % 24)));
+    parameters.materials[0].diagonal_threshold_q = diagonalThreshold(parameters.materials[0].slope_threshold_q);
     parameters.obstacle_threshold_q = std::int32_t(random() % 100000);
     parameters.penetration_divider_q = std::int32_t(1 + random() % 100000);
     parameters.spread_cells = std::int32_t(1 + random() % 64);
@@ -492,9 +492,9 @@ TEST_F(Thesis, TheLooksHaveTheirCaptions) {
     const Parameters& p = scene->pack.parameters;
     EXPECT_EQ(p.displacement, Displacement::spread) << name;
     EXPECT_EQ(p.slopes, SlopeRule::scatter) << name;
-    EXPECT_EQ(p.compression_q16, std::lround(look.compression * 65536)) << name;
-    EXPECT_EQ(p.roughness_q16, std::lround(look.roughness * 65536)) << name;
-    EXPECT_EQ(p.slope_threshold_q, std::int32_t(1e4 * std::tan(look.slope * look.cell_q / 1e4))) << name;
+    EXPECT_EQ(p.materials[0].compression_q16, std::lround(look.compression * 65536)) << name;
+    EXPECT_EQ(p.materials[0].roughness_q16, std::lround(look.roughness * 65536)) << name;
+    EXPECT_EQ(p.materials[0].slope_threshold_q, std::int32_t(1e4 * std::tan(look.slope * look.cell_q / 1e4))) << name;
   }
 }
 

@@ -61,7 +61,7 @@ TEST(Join, AfterAChangeOfParametersHoldsThemToo) {
   ScriptedSession session;
   Parameters first = session.pack.parameters, second = first;
   first.slopes = SlopeRule::flux;
-  first.compression_q16 = 30000;
+  first.materials[0].compression_q16 = 30000;
   second.nearest = NearestSearch::jump_flooding;
   session.changes = {{10, first}, {70, second}};
   Rig rig(kFar, session);

@@ -45,8 +45,10 @@ void exchangeSweep(DenseWorld& world, const Parameters& parameters) {
         if (((matching.by_row ? y : x) & 1) != matching.parity) continue;
         if (!isActive(world, x, y) || !isActive(world, x + matching.dx, y + matching.dy)) continue;
         const bool diagonal = matching.dx != 0 && matching.dy != 0;
-        exchangePair(world, world.at(x, y), world.at(x + matching.dx, y + matching.dy),
-                     diagonal ? parameters.diagonal_threshold_q : parameters.slope_threshold_q, parameters);
+        exchangePair(
+            world, world.at(x, y), world.at(x + matching.dx, y + matching.dy),
+            diagonal ? parameters.materials[0].diagonal_threshold_q : parameters.materials[0].slope_threshold_q,
+            parameters);
       }
 }
 
@@ -66,13 +68,14 @@ void averageFromCell(const DenseWorld& before, const Parameters& parameters, int
   std::int64_t drops = 0;
   visitNeighbours(before, x, y, [&](std::size_t neighbour, bool) {
     const std::int64_t drop = std::int64_t(before.height[cell]) - before.height[neighbour];
-    if (drop <= parameters.slope_threshold_q || roomOf(before, neighbour, parameters) == 0) return;
+    if (drop <= parameters.materials[0].slope_threshold_q || roomOf(before, neighbour, parameters) == 0) return;
     takers.push_back(neighbour);
     drops += std::min(drop, kDropMost);
   });
   if (takers.empty()) return;
   const auto count = std::int64_t(takers.size());
-  const std::int64_t moves = std::min(drops / count * parameters.roughness_q16 / kOneQ16, soilOf(before, cell));
+  const std::int64_t moves =
+      std::min(drops / count * parameters.materials[0].roughness_q16 / kOneQ16, soilOf(before, cell));
   for (const std::size_t taker : takers) {
     const auto flow = std::int32_t(std::min(moves / count, roomOf(before, taker, parameters) / 8));
     world.height[cell] -= flow;
@@ -84,11 +87,12 @@ void averageFromCell(const DenseWorld& before, const Parameters& parameters, int
 void fluxFromCell(const DenseWorld& before, const Parameters& parameters, int x, int y, DenseWorld& world) {
   const std::size_t cell = before.at(x, y);
   visitNeighbours(before, x, y, [&](std::size_t neighbour, bool diagonal) {
-    const std::int64_t threshold = diagonal ? parameters.diagonal_threshold_q : parameters.slope_threshold_q;
+    const std::int64_t threshold =
+        diagonal ? parameters.materials[0].diagonal_threshold_q : parameters.materials[0].slope_threshold_q;
     const std::int64_t excess = std::int64_t(before.height[cell]) - before.height[neighbour] - threshold;
     if (excess <= 0) return;
     const std::int64_t most = std::min(soilOf(before, cell), roomOf(before, neighbour, parameters));
-    const auto flow = std::int32_t(std::min(excess * parameters.roughness_q16 / kOneQ16, most) / 8);
+    const auto flow = std::int32_t(std::min(excess * parameters.materials[0].roughness_q16 / kOneQ16, most) / 8);
     world.height[cell] -= flow;
     world.height[neighbour] += flow;
   });

@@ -180,13 +180,13 @@ void oracleCompact(DenseWorld& world, std::vector<std::int32_t>& overlap, const 
       const std::size_t i = world.at(x, y);
       if (overlap[i] <= 0) continue;
       const std::int64_t compacted = world.compacted[i];
-      std::int64_t share_q16 = parameters.compression_q16;
+      std::int64_t share_q16 = parameters.materials[0].compression_q16;
       std::int64_t room = rules::kHeightLimit - compacted;
-      if (parameters.compaction_limit_q16 > 0) {
+      if (parameters.materials[0].compaction_limit_q16 > 0) {
         // All the soil that the column ever had, as far as it counts.
         const std::int64_t soil = std::min<std::int64_t>(std::int64_t(world.height[i]) - world.bedrock[i], kDeepSoil) +
                                   std::min<std::int64_t>(compacted, kDeepSoil);
-        const std::int64_t limit = soil * parameters.compaction_limit_q16 / kOneQ16;
+        const std::int64_t limit = soil * parameters.materials[0].compaction_limit_q16 / kOneQ16;
         room = std::max<std::int64_t>(limit - compacted, 0);
         share_q16 = limit == 0 ? 0 : share_q16 * room / limit;
       }

@@ -87,8 +87,8 @@ std::unique_ptr<StageRig> pressedRig(const BackendCase& backend_case, const Worl
 
 ScenePack compactingPack(int compression_q16, int limit_q16) {
   ScenePack pack = groundPack(5, 1, Cells(5, 1000), 5000);
-  pack.parameters.compression_q16 = compression_q16;
-  pack.parameters.compaction_limit_q16 = limit_q16;
+  pack.parameters.materials[0].compression_q16 = compression_q16;
+  pack.parameters.materials[0].compaction_limit_q16 = limit_q16;
   return pack;
 }
 
@@ -132,7 +132,7 @@ TEST_P(PenetrationStage, CompactsLikeTheOracleOnWorldsOfAnySize) {
     const auto& [columns, rows] = sizes[seed % 4];
     ScenePack pack = noisePack(columns, rows, seed, -2000, 2000, seed % 3 == 0 ? 900 : 30000);
     pack.parameters = randomParameters(seed);
-    pack.parameters.compression_q16 = seed % 4 == 0 ? kOneQ16 : 19661;
+    pack.parameters.materials[0].compression_q16 = seed % 4 == 0 ? kOneQ16 : 19661;
     const World world(std::move(pack));
     const auto rig = makeStageRig(GetParam(), world);
     coverAtRandom(*rig, seed);

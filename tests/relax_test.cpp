@@ -45,8 +45,8 @@ TEST_P(RelaxStage, OneSweepOverAColumnOnFiveByFiveCells) {
   std::vector<std::int32_t> ground(25, 0);
   ground[12] = 1600;
   ScenePack pack = groundPack(5, 5, ground, 100000);
-  pack.parameters.slope_threshold_q = 100;
-  pack.parameters.diagonal_threshold_q = 141;
+  pack.parameters.materials[0].slope_threshold_q = 100;
+  pack.parameters.materials[0].diagonal_threshold_q = 141;
   const World world(std::move(pack));
   const auto rig = makeStageRig(GetParam(), world);
   rig->relax(0, 1);
@@ -67,8 +67,8 @@ void checkRandomWorld(BackendCase backend_case, int columns, int rows, std::uint
   std::vector<std::int32_t> ground;
   for (int i = 0; i < columns * rows; ++i) ground.push_back(int(engine() % std::uint32_t(relief)));
   ScenePack pack = groundPack(columns, rows, ground, seed % 3 == 0 ? 500 : 100000);
-  pack.parameters.slope_threshold_q = seed % 5 == 0 ? 1 : 350;
-  pack.parameters.diagonal_threshold_q = seed % 5 == 0 ? 1 : 495;
+  pack.parameters.materials[0].slope_threshold_q = seed % 5 == 0 ? 1 : 350;
+  pack.parameters.materials[0].diagonal_threshold_q = seed % 5 == 0 ? 1 : 495;
   pack.parameters.obstacle_threshold_q = seed % 4 == 0 ? 0 : 200;
   const World world(std::move(pack));
   const int sweeps = int(seed % 14);

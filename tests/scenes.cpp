@@ -17,8 +17,8 @@ ScenePack emptyPack(int width, int height) {
   pack.width_cells = width;
   pack.height_cells = height;
   pack.cell_q = kCell;
-  pack.parameters.slope_threshold_q = 700;
-  pack.parameters.diagonal_threshold_q = 990;
+  pack.parameters.materials[0].slope_threshold_q = 700;
+  pack.parameters.materials[0].diagonal_threshold_q = 990;
   return pack;
 }
 
@@ -156,11 +156,11 @@ Parameters randomParameters(std::uint32_t seed) {
   p.active_areas = std::uint8_t(oneOf({0, 1, 1, 1, 1, 1, 1}));
   p.displace_iterations = oneOf({0, 1, 10, 40});
   p.sweeps_per_tick = oneOf({0, 1, 3, 10});
-  p.compression_q16 = oneOf({0, 0, 0, kOneQ16 * 3 / 10, kOneQ16});
-  p.compaction_limit_q16 = oneOf({0, 1, kOneQ16 / 5, kOneQ16});
-  p.roughness_q16 = oneOf({0, kOneQ16 / 2, kOneQ16, kOneQ16});
-  p.slope_threshold_q = oneOf({0, 1, 7, 350, 700, 2000, kNeverSteep});
-  p.diagonal_threshold_q = oneOf({0, 1, 9, 495, 990, 2828, kNeverSteep});
+  p.materials[0].compression_q16 = oneOf({0, 0, 0, kOneQ16 * 3 / 10, kOneQ16});
+  p.materials[0].compaction_limit_q16 = oneOf({0, 1, kOneQ16 / 5, kOneQ16});
+  p.materials[0].roughness_q16 = oneOf({0, kOneQ16 / 2, kOneQ16, kOneQ16});
+  p.materials[0].slope_threshold_q = oneOf({0, 1, 7, 350, 700, 2000, kNeverSteep});
+  p.materials[0].diagonal_threshold_q = oneOf({0, 1, 9, 495, 990, 2828, kNeverSteep});
   p.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
   p.penetration_divider_q = oneOf({1, 50, 1000});
   p.spread_cells = oneOf({1, 3, 16, kSpreadCellsLimit});
@@ -179,9 +179,10 @@ std::string describe(const Parameters& p) {
   text << displacements[int(p.displacement)] << " (" << p.displace_iterations << " iterations, " << p.spread_cells
        << " cells, one per " << p.penetration_divider_q << ", " << p.capacity_rounds << " rounds), "
        << searches[int(p.nearest)] << ", " << metrics[int(p.metric)] << ", " << slopes[int(p.slopes)] << " ("
-       << p.sweeps_per_tick << " sweeps, roughness " << p.roughness_q16 << "), thresholds " << p.slope_threshold_q
-       << " / " << p.diagonal_threshold_q << " / " << p.obstacle_threshold_q << ", compression " << p.compression_q16
-       << " up to " << p.compaction_limit_q16 << ", frustum " << p.frustum_height_q << ", margin "
+       << p.sweeps_per_tick << " sweeps, roughness " << p.materials[0].roughness_q16 << "), thresholds "
+       << p.materials[0].slope_threshold_q << " / " << p.materials[0].diagonal_threshold_q << " / "
+       << p.obstacle_threshold_q << ", compression " << p.materials[0].compression_q16 << " up to "
+       << p.materials[0].compaction_limit_q16 << ", frustum " << p.frustum_height_q << ", margin "
        << p.active_margin_cells << (p.active_areas == 0 ? ", the whole world active" : "");
   return text.str();
 }
@@ -345,8 +346,8 @@ std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles) {
         const std::int64_t difference =
             std::int64_t(tile->height()[std::size_t(i)]) -
             other->height()[std::size_t(other_y % rules::kTileSize * rules::kTileSize + other_x % rules::kTileSize)];
-        const int threshold =
-            dx != 0 && dy != 0 ? pack.parameters.diagonal_threshold_q : pack.parameters.slope_threshold_q;
+        const int threshold = dx != 0 && dy != 0 ? pack.parameters.materials[0].diagonal_threshold_q
+                                                 : pack.parameters.materials[0].slope_threshold_q;
         steepest = std::max(steepest, std::abs(difference) - threshold);
       }
     }

@@ -152,9 +152,9 @@ TEST_P(SessionReplay, OfTheFileHasTheRecordedHashesAndLedgers) {
 
 TEST_P(SessionReplay, OfChangedParametersHasTheRecordedHashes) {
   Parameters steep = world_.pack.parameters, tight = steep;
-  steep.slope_threshold_q = steep.diagonal_threshold_q = kNeverSteep;
-  tight.slope_threshold_q = 150;
-  tight.diagonal_threshold_q = 212;
+  steep.materials[0].slope_threshold_q = steep.materials[0].diagonal_threshold_q = kNeverSteep;
+  tight.materials[0].slope_threshold_q = 150;
+  tight.materials[0].diagonal_threshold_q = 212;
   tight.sweeps_per_tick = 3;
   const auto plain = record();
   const auto hashes = record({{1, steep}, {7, tight}});
@@ -242,7 +242,7 @@ TEST_F(Session, ASnapshotHoldsTheParametersOfItsTick) {
   const Script script(world_.base);
   Parameters changed = world_.pack.parameters;
   changed.capacity_rounds = 9;
-  changed.slope_threshold_q = kNeverSteep;
+  changed.materials[0].slope_threshold_q = kNeverSteep;
   ASSERT_TRUE(simulation.step(script.poses(1), changed));
   ASSERT_TRUE(simulation.step(script.poses(2)));
   const Bytes bytes = encodeSnapshot(simulation.state(), world_.base);

@@ -28,8 +28,8 @@ ScenePack columnPack(int size, int column_height, int threshold) {
   std::vector<std::int32_t> ground(std::size_t(size * size), 0);
   ground[std::size_t(size / 2 * size + size / 2)] = column_height;
   ScenePack pack = groundPack(size, size, ground, column_height + 100000);
-  pack.parameters.slope_threshold_q = threshold;
-  pack.parameters.diagonal_threshold_q = threshold * 99 / 70;  // times the root of 2
+  pack.parameters.materials[0].slope_threshold_q = threshold;
+  pack.parameters.materials[0].diagonal_threshold_q = threshold * 99 / 70;  // times the root of 2
   addBody(pack, boxMesh(200, 200, 200), size / 2 * 1000 - 2500, size / 2 * 1000 + 500, 10);
   return pack;
 }

@@ -20,9 +20,9 @@ std::int64_t sumOf(const Cells& cells) { return std::accumulate(cells.begin(), c
 Parameters sloping(SlopeRule rule, int threshold, int diagonal_threshold, int roughness_q16) {
   Parameters parameters;
   parameters.slopes = rule;
-  parameters.roughness_q16 = roughness_q16;
-  parameters.slope_threshold_q = threshold;
-  parameters.diagonal_threshold_q = diagonal_threshold;
+  parameters.materials[0].roughness_q16 = roughness_q16;
+  parameters.materials[0].slope_threshold_q = threshold;
+  parameters.materials[0].diagonal_threshold_q = diagonal_threshold;
   return parameters;
 }
 

@@ -74,7 +74,7 @@ NativeStageRig::NativeStageRig(const World& made_world, int thread_count, const 
       tiles(takeTiles(plan_, made_world.base, WorldState{}, pool)),
       context{made_world.pack, plan_.parameters, set, pool, area},
       skip_settled_(skip_settled) {
-  area.gather(tiles.tiles, plan_.parameters.compression_q16 > 0, pool);
+  area.gather(tiles.tiles, plan_.parameters.materials[0].compression_q16 > 0, pool);
   area.clearUnderside(made_world.pack, pool);
   area.underside_before = area.underside;
   runDepth(context, {});
@@ -147,7 +147,7 @@ void coverAtRandom(StageRig& rig, std::uint32_t seed) {
     compacted.push_back(engine() % 3 == 0 ? int(engine() % 900) : 0);
   }
   rig.setUnderside(underside);
-  if (rig.world().pack.parameters.compression_q16 > 0) rig.setCompacted(compacted);
+  if (rig.world().pack.parameters.materials[0].compression_q16 > 0) rig.setCompacted(compacted);
 }
 
 DenseWorld denseCopy(const StageRig& rig) {

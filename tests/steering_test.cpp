@@ -77,11 +77,11 @@ TEST(Steering, ChangesHoldFromTheirTickOn) {
                                      changeOf("12:capacityRounds=3"), changeOf("30:capacityRounds=9")}});
   ASSERT_EQ(run.changes.size(), 2u);
   const Parameters& five = run.changes.at(5);
-  EXPECT_EQ(five.slope_threshold_q, 500);
-  EXPECT_EQ(five.roughness_q16, 32768);
+  EXPECT_EQ(five.materials[0].slope_threshold_q, 500);
+  EXPECT_EQ(five.materials[0].roughness_q16, 32768);
   EXPECT_EQ(five.capacity_rounds, world.pack.parameters.capacity_rounds);
   EXPECT_EQ(run.changes.at(12).capacity_rounds, 3) << "of one tick, the last given counts";
-  EXPECT_EQ(run.changes.at(12).slope_threshold_q, 500) << "what was changed stays";
+  EXPECT_EQ(run.changes.at(12).materials[0].slope_threshold_q, 500) << "what was changed stays";
   EXPECT_EQ(run.parameters, run.changes.at(12));
   EXPECT_EQ(run.ticks, 20);
   EXPECT_NE(run.hash, plain.hash);
@@ -120,8 +120,8 @@ TEST(Steering, TheConsolesChangesComeWithTheNextTick) {
   const Steered run =
       runSession(world, {.ticks = 8, .changes = {changeOf("1:roughness=0.5,spreadCells=3")}, .console = &queue});
   ASSERT_EQ(run.changes.size(), 1u);
-  EXPECT_EQ(run.changes.at(1).roughness_q16, 49152);
-  EXPECT_EQ(run.changes.at(1).compression_q16, 32768);
+  EXPECT_EQ(run.changes.at(1).materials[0].roughness_q16, 49152);
+  EXPECT_EQ(run.changes.at(1).materials[0].compression_q16, 32768);
   EXPECT_EQ(run.changes.at(1).spread_cells, 3);
   EXPECT_TRUE(queue.tryTake().empty());
 }

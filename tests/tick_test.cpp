@@ -138,7 +138,8 @@ TEST_P(WholeTick, ABodyThatCoversTheWholeWorldLeavesTheSoilNowhereToGo) {
 TEST_P(WholeTick, AFastBodyLeavesATrailWithoutGaps) {
   ScenePack pack = flatPack(120, 40);
   addBody(pack, boxMesh(3000, 3000, 3000), 10000, 20000, 600);
-  pack.parameters.slope_threshold_q = pack.parameters.diagonal_threshold_q = 5000;  // the trail keeps its walls
+  pack.parameters.materials[0].slope_threshold_q = pack.parameters.materials[0].diagonal_threshold_q =
+      5000;  // the trail keeps its walls
   const World world(std::move(pack));
   Simulation simulation = world.simulateOn(GetParam());
   ASSERT_TRUE(simulation.step(simulation.state().poses));
@@ -168,7 +169,7 @@ TEST_P(WholeTick, ABladeThinnerThanACellPressesWhereverItIs) {
 
 TEST_P(WholeTick, CompactedSoilIsOnTheLedgerAndOnlyTilesThatHaveSomeHoldAPlaneOfIt) {
   ScenePack pack = flatPack(130, 20);
-  pack.parameters.compression_q16 = kOneQ16 / 4;
+  pack.parameters.materials[0].compression_q16 = kOneQ16 / 4;
   pack.parameters.active_margin_cells = 40;
   addBody(pack, boxMesh(3000, 3000, 3000), 60500, 10500, 400);
   const World world(std::move(pack));

@@ -17,7 +17,7 @@ constexpr double kTwo32 = 4294967296.0;
 
 /// Share of side neighbours among a DEM's samples whose slope is above the pack's threshold.
 double steepShare(const ScenePack& pack, const Dem& dem) {
-  const double slope = double(pack.parameters.slope_threshold_q) / pack.cell_q;
+  const double slope = double(pack.parameters.materials[0].slope_threshold_q) / pack.cell_q;
   const double rest_x_q = slope * dem.sample_x_m * rules::kUnitsPerMetre;
   const double rest_y_q = slope * dem.sample_y_m * rules::kUnitsPerMetre;
   std::int64_t steep_count = 0;
@@ -36,8 +36,8 @@ void setReposeAngle(ScenePack& pack, double repose_deg, std::vector<std::string>
   const double rise_q = std::tan(repose_deg * std::numbers::pi / 180.0) * pack.cell_q;
   // A hair is added so that the tangent of 45 degrees, just under 1 in floats, keeps its last unit.
   const auto threshold = [](double units) { return std::int32_t(std::floor(units + 1e-6)); };
-  pack.parameters.slope_threshold_q = std::max(1, threshold(rise_q));
-  pack.parameters.diagonal_threshold_q = std::max(1, threshold(rise_q * std::numbers::sqrt2));
+  pack.parameters.materials[0].slope_threshold_q = std::max(1, threshold(rise_q));
+  pack.parameters.materials[0].diagonal_threshold_q = std::max(1, threshold(rise_q * std::numbers::sqrt2));
   if (threshold(rise_q) < 1) {
     notes.push_back(
         fmt::format("soil.repose_deg: {} degrees are less than 0.1 mm per cell: slope threshold rounded up to "

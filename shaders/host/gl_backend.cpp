@@ -360,7 +360,7 @@ class GlBackend final : public Backend {
   ReadbackBuffer& readback() { return device_->changed_cells[next_readback_]; }
   static std::int64_t bytesOf(std::int64_t cells) { return cells * std::int64_t(sizeof(std::int32_t)); }
 
-  static bool compactsIn(const TickPlan& plan) { return plan.parameters.compression_q16 > 0; }
+  static bool compactsIn(const TickPlan& plan) { return plan.parameters.materials[0].compression_q16 > 0; }
 
   /// The effect's figures.
   void fillIn(const Submitted& tick, std::int64_t tile_count, TickEffect& effect) const {

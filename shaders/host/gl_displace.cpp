@@ -39,7 +39,7 @@ void GlStages::penetration(const TickTables& tick, int i) {
   free_mask_.bind(rules::kBindFreeMask);
   row_chunks_.bind(rules::kBindRowChunks);
   bindTable(rules::kBindRowFlags, tick.row_flags);
-  if (tick.parameters.compression_q16 > 0) compacted_.bind(rules::kBindCompacted);
+  if (tick.parameters.materials[0].compression_q16 > 0) compacted_.bind(rules::kBindCompacted);
   use(*chosen_.penetration, step.first_list);
   setUniform(2, leastToPlace(tick.parameters));
   dispatch(step.domain_blocks);

@@ -11,7 +11,7 @@ std::string defined(bool on) { return on ? "1" : "0"; }
 
 bool sameMethods(const Parameters& a, const Parameters& b) {
   return a.displacement == b.displacement && a.nearest == b.nearest && a.metric == b.metric && a.slopes == b.slopes &&
-         (a.compression_q16 > 0) == (b.compression_q16 > 0);
+         (a.materials[0].compression_q16 > 0) == (b.materials[0].compression_q16 > 0);
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ const GlProgram* GlPrograms::get(const std::string& name, ShaderDefines defines,
 const TickPrograms& GlPrograms::choose(const Parameters& parameters) {
   if (chosen_.gather != nullptr && sameMethods(parameters, chosen_by_)) return chosen_;
   TickPrograms chosen;
-  const std::string compacts = defined(parameters.compression_q16 > 0);
+  const std::string compacts = defined(parameters.materials[0].compression_q16 > 0);
   chosen.gather = get("gather", {{"SPOOR_COMPACTS", compacts}});
   chosen.cover = get("cover");
   chosen.ceiling = get("ceiling");

@@ -27,8 +27,9 @@ void GlStages::sweepPlain(const TickTables& tick, int first_step) {
     setUniform(2, first_step + matching);
     setUniform(3, skip_settled_ ? 1 : 0);
     setUniform(4, int(tick.tile_index.size()));
-    setUniform(5, rules::exchangeThreshold(matching < rules::kMatchDiagonal ? tick.parameters.slope_threshold_q
-                                                                            : tick.parameters.diagonal_threshold_q));
+    setUniform(5, rules::exchangeThreshold(matching < rules::kMatchDiagonal
+                                               ? tick.parameters.materials[0].slope_threshold_q
+                                               : tick.parameters.materials[0].diagonal_threshold_q));
     setUniform(6, tick.parameters.obstacle_threshold_q);
     dispatch(tick.exchange);
   }
@@ -61,9 +62,9 @@ void GlStages::sweepSlopes(const TickTables& tick) {
   const auto run = [&](const GlProgram& program) {
     use(program);
     setUniform(2, int(tick.tile_index.size()));
-    setUniform(3, tick.parameters.slope_threshold_q);
-    setUniform(4, tick.parameters.diagonal_threshold_q);
-    setUniform(5, tick.parameters.roughness_q16);
+    setUniform(3, tick.parameters.materials[0].slope_threshold_q);
+    setUniform(4, tick.parameters.materials[0].diagonal_threshold_q);
+    setUniform(5, tick.parameters.materials[0].roughness_q16);
     setUniform(6, tick.parameters.obstacle_threshold_q);
     dispatch(tick.slope);
   };

@@ -96,7 +96,7 @@ Status GlStages::reserve(const TickTables& tick) {
   const SlopeRule slopes = tick.parameters.slopes;
   const bool iterative = tick.parameters.displacement == Displacement::iterative;
   const bool flooded = tick.parameters.nearest != NearestSearch::exact;
-  const bool compacts = tick.parameters.compression_q16 > 0;
+  const bool compacts = tick.parameters.materials[0].compression_q16 > 0;
   const bool in_turns = slopes != SlopeRule::exchange || schedule_ == RelaxSchedule::fused;
   const std::int64_t plane_bytes = tiles * rules::kTileCells * kCellBytes;
   const std::int64_t domain_bytes = largest.domain_cells * kCellBytes;
@@ -173,7 +173,7 @@ void GlStages::gather(const TickTables& tick, const TilePool& pool) {
   bindCells(tick);
   pool.height().bind(rules::kBindPoolHeight);
   pool.bedrock().bind(rules::kBindPoolBedrock);
-  if (tick.parameters.compression_q16 > 0) {
+  if (tick.parameters.materials[0].compression_q16 > 0) {
     compacted_.bind(rules::kBindCompacted);
     pool.compacted().bind(rules::kBindPoolCompacted);
   }
@@ -217,7 +217,7 @@ void GlStages::hash(const TickTables& tick, const TilePool& pool) {
   pool.height().bind(rules::kBindPoolHeight);
   results_.bind(rules::kBindResults);
   staging_.bind(rules::kBindStaging);
-  if (tick.parameters.compression_q16 > 0) {
+  if (tick.parameters.materials[0].compression_q16 > 0) {
     compacted_.bind(rules::kBindCompacted);
     pool.compacted().bind(rules::kBindPoolCompacted);
   }

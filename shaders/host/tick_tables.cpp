@@ -256,10 +256,10 @@ class TableMaker {
     rules::TickHead head{};
     head.tile_count = count_;
     head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
-    head.slope_threshold = rules::exchangeThreshold(plan_.parameters.slope_threshold_q);
-    head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.diagonal_threshold_q);
-    head.compression = plan_.parameters.compression_q16;
-    head.compaction_limit = plan_.parameters.compaction_limit_q16;
+    head.slope_threshold = rules::exchangeThreshold(plan_.parameters.materials[0].slope_threshold_q);
+    head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.materials[0].diagonal_threshold_q);
+    head.compression = plan_.parameters.materials[0].compression_q16;
+    head.compaction_limit = plan_.parameters.materials[0].compaction_limit_q16;
     head.penetration_divider = plan_.parameters.penetration_divider_q;
     head.spread_cells = plan_.parameters.spread_cells;
     head.highest = -rules::kHeightLimit;

@@ -19,14 +19,16 @@ RULE_CONST kMatchAntidiagonal = 6;  // matchings 6, 7: (x, y) - (x-1, y+1), pari
 RULE int exchangeThreshold(int slope_threshold) { return maxInt(slope_threshold, 1); }
 
 /// Soil that flows from cell a to cell b (negative: from b to a), in height units.
-/// @param threshold  largest height difference that rests, >= 1
+/// @param threshold_a, threshold_b  largest height difference that rests where a, where b is the higher one, >= 1: what
+/// slides is the higher cell's soil, so its material decides
 /// @param soil_a, soil_b  height above bedrock, >= 0: a cell gives no more than that
 /// @param room_a, room_b  what each can take beneath a body, >= 0 (roomBeneath)
 /// Ranges: heights within +-kHeightLimit; the result's magnitude is at most 2^30.
-RULE int pairFlow(int height_a, int height_b, int threshold, int soil_a, int soil_b, int room_a, int room_b) {
+RULE int pairFlow(int height_a, int height_b, int threshold_a, int threshold_b, int soil_a, int soil_b, int room_a,
+                  int room_b) {
   int difference = height_a - height_b;
-  int forward = maxInt(difference, threshold) - threshold;
-  int backward = maxInt(-difference, threshold) - threshold;
+  int forward = maxInt(difference, threshold_a) - threshold_a;
+  int backward = maxInt(-difference, threshold_b) - threshold_b;
   int from_a = minInt((forward >> 1) + (forward & 1), minInt(soil_a, room_b));
   int from_b = minInt((backward >> 1) + (backward & 1), minInt(soil_b, room_a));
   return from_a - from_b;

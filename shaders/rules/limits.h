@@ -19,6 +19,7 @@ RULE_CONST kNoTarget = -1;
 // Planes, as they enter hashes.
 RULE_CONST kHeightPlane = 0;
 RULE_CONST kCompactedPlane = 1;
+RULE_CONST kMaterialPlane = 2;
 
 /// The eight neighbours of a cell, in turn from +x towards +y: d = 0..7 is (1,0) (1,1) (0,1) (-1,1) (-1,0) ...; the one
 /// opposite to d is d ^ 4. One from each of two bits of a constant.

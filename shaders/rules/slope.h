@@ -30,14 +30,14 @@ RULE int slopeFlow(int amount, int room) { return minInt(amount, room >> 3); }
 
 /// Flux: what flows from cell a to cell b (negative: back). An eighth of the excess over the threshold, times
 /// roughness, toward 0; at most an eighth of the giver's soil and of the taker's room. Odd in its cells, so that both
-/// sides of an edge find the same; excess below 8 units never moves.
-RULE int slopeFlux(int height_a, int height_b, int threshold, int roughness, int soil_a, int soil_b, int room_a,
-                   int room_b) {
+/// sides of an edge find the same; excess below 8 units never moves. Threshold and roughness are the higher cell's.
+RULE int slopeFlux(int height_a, int height_b, int threshold_a, int threshold_b, int roughness_a, int roughness_b,
+                   int soil_a, int soil_b, int room_a, int room_b) {
   int difference = height_a - height_b;
-  int forward = maxInt(difference, threshold) - threshold;
-  int backward = maxInt(-difference, threshold) - threshold;
-  int from_a = minInt(timesQ16(forward, roughness), minInt(soil_a, room_b)) >> 3;
-  int from_b = minInt(timesQ16(backward, roughness), minInt(soil_b, room_a)) >> 3;
+  int forward = maxInt(difference, threshold_a) - threshold_a;
+  int backward = maxInt(-difference, threshold_b) - threshold_b;
+  int from_a = minInt(timesQ16(forward, roughness_a), minInt(soil_a, room_b)) >> 3;
+  int from_b = minInt(timesQ16(backward, roughness_b), minInt(soil_b, room_a)) >> 3;
   return from_a - from_b;
 }
 

@@ -4,24 +4,43 @@
 #include <span>
 
 #include "shaders/rules/crater.h"
+#include "shaders/rules/drift.h"
 
 namespace spoor {
 
-/// A row of cells as the slope rules see them (rules/slope.h). Pointers are to its first cell; kHalo more cells lie
-/// before it and behind its last.
+/// Cells that exchange soil with each other or with those of another row (rules/exchange.h).
+struct ExchangeCells {
+  std::int32_t* height;
+  const std::int32_t* bedrock;
+  const std::int32_t* underside;  // nullptr: nothing above limits what they take
+  const std::int32_t* threshold;  // of each, >= 1; nullptr: ExchangeNumbers::threshold
+};
+struct ExchangeNumbers {
+  int threshold;  // >= 1
+  int obstacle_threshold;
+};
+
+/// A row of cells as the slope rules see them (rules/slope.h, rules/drift.h). Pointers are to its first cell; kHalo
+/// more cells lie before it and behind its last.
 struct SlopeRow {
   static constexpr int kHalo = 2;
   static constexpr int kMostCells = 256;
+  static constexpr int kPlanes = 9;
 
   std::int32_t* height;
-  std::int32_t* room;    // roomBeneath
-  std::int32_t* soil;    // height - bedrock
-  std::int32_t* amount;  // slopeAmount
+  std::int32_t* room;       // roomBeneath
+  std::int32_t* soil;       // height - bedrock
+  std::int32_t* amount;     // slopeAmount; drift: DriftNumbers::inverse
+  std::int32_t* threshold;  // of its material; drift: DriftNumbers::rest
+  std::int32_t* diagonal_threshold;
+  std::int32_t* roughness;  // drift: DriftNumbers::rate
+  std::int32_t* push_x;     // drift: pushedSoil along x and y
+  std::int32_t* push_y;
 };
 
-/// The slope rules' numbers of a tick (Parameters).
+/// The numbers of a material in a tick, as the slope rules and drift want them: a column of SlopeRow's.
 struct SlopeNumbers {
-  int threshold, diagonal_threshold, roughness;
+  std::int32_t threshold, diagonal_threshold, roughness, inverse;
 };
 
 /// The inner loops over rows of cells, compiled once per instruction set from kernels.inl; every set gives the same
@@ -52,34 +71,31 @@ struct Kernels {
   void (*carryFree)(const std::int32_t* overlap, int n, int y, std::int32_t* last_free, std::int32_t* out);
   /// The same on the way up, merged: out[i] = the nearer of out[i] and last_free[i], the lower y where equally near.
   void (*mergeFree)(const std::int32_t* overlap, int n, int y, std::int32_t* last_free, std::int32_t* out);
-  /// Stage relax: pairs (a[i], b[i]); true if any soil moved. The rows must not overlap.
-  bool (*exchangeRows)(std::int32_t* a, std::int32_t* b, const std::int32_t* bedrock_a, const std::int32_t* bedrock_b,
-                       int n, int threshold);
-  bool (*exchangeRowsBeneath)(std::int32_t* a, std::int32_t* b, const std::int32_t* bedrock_a,
-                              const std::int32_t* bedrock_b, const std::int32_t* underside_a,
-                              const std::int32_t* underside_b, int n, int threshold, int obstacle_threshold);
+  /// Stage relax: pairs (a[i], b[i]); true if any soil moved. The rows must not overlap, and be alike in which of
+  /// their pointers are nullptr.
+  bool (*exchangeRows)(const ExchangeCells& a, const ExchangeCells& b, int n, const ExchangeNumbers& numbers);
   /// Stage relax: pairs (cells[2i], cells[2i + 1]), i < pair_count <= 32. One more cell than the pairs is read, so that
   /// the loop runs over neighbours instead of gathering pairs.
-  bool (*exchangeWithin)(std::int32_t* cells, const std::int32_t* bedrock, int pair_count, int threshold);
-  bool (*exchangeWithinBeneath)(std::int32_t* cells, const std::int32_t* bedrock, const std::int32_t* underside,
-                                int pair_count, int threshold, int obstacle_threshold);
-  /// Stage relax, the slope rules: n cells as they see them, into a SlopeRow's planes but for the amount.
-  void (*slopeCells)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
-                     int obstacle_threshold, std::int32_t* height_there, std::int32_t* room, std::int32_t* soil);
+  bool (*exchangeWithin)(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& numbers);
+  /// Stage relax, the slope rules: n cells as they see them, into a SlopeRow's planes but for the amount, and pushes.
+  /// @param material  of each; nullptr: 0
+  /// @param numbers   [materials]
+  void (*slopeCells)(const ExchangeCells& cells, const std::int32_t* material, int n, const SlopeNumbers* numbers,
+                     int obstacle_threshold, const SlopeRow& row);
   /// Amounts of the cells begin .. end - 1 of a row, out of it and the rows above and below; false: all are 0.
-  bool (*slopeAmounts)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end,
-                       const SlopeNumbers& numbers);
+  bool (*slopeAmounts)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end);
   /// Flows between a row and the one below. carry[i]: in, what came from the row above; out, what goes to the row
   /// below. out[i]: heights after all flows of n <= kMostCells cells. Of the average rule (amounts are known), and
   /// flux.
-  void (*averageFlows)(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers,
-                       std::int32_t* carry, std::int32_t* out);
-  void (*fluxFlows)(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, std::int32_t* carry,
-                    std::int32_t* out);
+  void (*averageFlows)(const SlopeRow& row, const SlopeRow& below, int n, std::int32_t* carry, std::int32_t* out);
+  void (*fluxFlows)(const SlopeRow& row, const SlopeRow& below, int n, std::int32_t* carry, std::int32_t* out);
+  /// The same of drift; the row's first cell is (x, y), `phase` as driftDither has it.
+  void (*driftFlows)(const SlopeRow& row, const SlopeRow& below, int n, const rules::DriftStep& step, int x, int y,
+                     rules::uint phase, std::int32_t* carry, std::int32_t* out);
   /// The average rule as a scattering: what n cells of a row lose and others gain by it. change: of the rows above, of
   /// this one and below; cells -1 .. n of each.
   void (*scatterFlows)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int n,
-                       const SlopeNumbers& numbers, std::int32_t* const change[3]);
+                       std::int32_t* const change[3]);
 };
 
 /// The sets this processor runs, slowest first; "baseline" is always there.

@@ -138,82 +138,112 @@ void mergeFree(const int32_t* overlap, int n, int y, int32_t* __restrict last_fr
   }
 }
 
-inline bool exchange(int32_t& a, int32_t& b, int bedrock_a, int bedrock_b, int room_a, int room_b, int threshold) {
-  const int flow = rules::pairFlow(a, b, threshold, a - bedrock_a, b - bedrock_b, room_a, room_b);
-  a -= flow;
-  b += flow;
-  return flow != 0;
+/// A cell of those that exchange, as pairFlow sees it.
+struct Exchanged {
+  int32_t height, soil, room, threshold;
+};
+
+template <bool kBeneath, bool kMixed>
+inline Exchanged exchangedAt(int32_t height, const ExchangeCells& cells, const ExchangeNumbers& numbers, int i) {
+  return {height, height - cells.bedrock[i],
+          kBeneath ? rules::roomBeneath(height, cells.underside[i], numbers.obstacle_threshold) : rules::kHeightLimit,
+          kMixed ? cells.threshold[i] : numbers.threshold};
 }
 
-bool exchangeRows(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a, const int32_t* bedrock_b,
-                  int n, int threshold) {
-  int moved = 0;
-  for (int i = 0; i < n; ++i)
-    moved |= exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::kHeightLimit, rules::kHeightLimit, threshold);
-  return moved != 0;
+inline int32_t flowOf(const Exchanged& a, const Exchanged& b) {
+  return rules::pairFlow(a.height, b.height, a.threshold, b.threshold, a.soil, b.soil, a.room, b.room);
 }
 
-bool exchangeRowsBeneath(int32_t* __restrict a, int32_t* __restrict b, const int32_t* bedrock_a,
-                         const int32_t* bedrock_b, const int32_t* underside_a, const int32_t* underside_b, int n,
-                         int threshold, int obstacle_threshold) {
+template <bool kBeneath, bool kMixed>
+bool exchangeRowsOf(const ExchangeCells& cells_a, const ExchangeCells& cells_b, int n, const ExchangeNumbers& all) {
+  const ExchangeNumbers numbers = all;
+  int32_t* __restrict a = cells_a.height;
+  int32_t* __restrict b = cells_b.height;
+  const ExchangeCells in_a = cells_a, in_b = cells_b;
   int moved = 0;
-  for (int i = 0; i < n; ++i)
-    moved |=
-        exchange(a[i], b[i], bedrock_a[i], bedrock_b[i], rules::roomBeneath(a[i], underside_a[i], obstacle_threshold),
-                 rules::roomBeneath(b[i], underside_b[i], obstacle_threshold), threshold);
+  for (int i = 0; i < n; ++i) {
+    const int32_t flow = flowOf(exchangedAt<kBeneath, kMixed>(a[i], in_a, numbers, i),
+                                exchangedAt<kBeneath, kMixed>(b[i], in_b, numbers, i));
+    a[i] -= flow;
+    b[i] += flow;
+    moved |= flow;
+  }
   return moved != 0;
 }
 
 // Flows between all neighbours, those of the other parity masked out: twice the arithmetic of the pairs alone, but in
 // consecutive lanes, which is faster than taking pairs apart and putting them together.
-template <typename FlowOf>
-inline bool exchangeNeighbours(int32_t* __restrict cells, int pair_count, FlowOf flow_of) {
+template <bool kBeneath, bool kMixed>
+bool exchangeWithinOf(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& all) {
   constexpr int kMost = rules::kTileSize;
+  const ExchangeNumbers numbers = all;
+  const ExchangeCells in = cells;
+  int32_t* __restrict height = cells.height;
   int32_t flow[kMost + 1];
   int moved = 0;
   flow[0] = 0;
   for (int i = 0; i < 2 * pair_count; ++i) {
-    const int32_t f = flow_of(i) & ((i & 1) - 1);
+    const int32_t f = flowOf(exchangedAt<kBeneath, kMixed>(height[i], in, numbers, i),
+                             exchangedAt<kBeneath, kMixed>(height[i + 1], in, numbers, i + 1)) &
+                      ((i & 1) - 1);
     flow[i + 1] = f;
     moved |= f;
   }
-  for (int i = 0; i < 2 * pair_count; ++i) cells[i] += flow[i] - flow[i + 1];
+  for (int i = 0; i < 2 * pair_count; ++i) height[i] += flow[i] - flow[i + 1];
   return moved != 0;
 }
 
-bool exchangeWithin(int32_t* __restrict cells, const int32_t* bedrock, int pair_count, int threshold) {
-  return exchangeNeighbours(cells, pair_count, [=](int i) {
-    return rules::pairFlow(cells[i], cells[i + 1], threshold, cells[i] - bedrock[i], cells[i + 1] - bedrock[i + 1],
-                           rules::kHeightLimit, rules::kHeightLimit);
-  });
+bool exchangeRows(const ExchangeCells& a, const ExchangeCells& b, int n, const ExchangeNumbers& numbers) {
+  if (a.underside == nullptr)
+    return a.threshold == nullptr ? exchangeRowsOf<false, false>(a, b, n, numbers)
+                                  : exchangeRowsOf<false, true>(a, b, n, numbers);
+  return a.threshold == nullptr ? exchangeRowsOf<true, false>(a, b, n, numbers)
+                                : exchangeRowsOf<true, true>(a, b, n, numbers);
 }
 
-bool exchangeWithinBeneath(int32_t* __restrict cells, const int32_t* bedrock, const int32_t* underside, int pair_count,
-                           int threshold, int obstacle_threshold) {
-  return exchangeNeighbours(cells, pair_count, [=](int i) {
-    return rules::pairFlow(cells[i], cells[i + 1], threshold, cells[i] - bedrock[i], cells[i + 1] - bedrock[i + 1],
-                           rules::roomBeneath(cells[i], underside[i], obstacle_threshold),
-                           rules::roomBeneath(cells[i + 1], underside[i + 1], obstacle_threshold));
-  });
+bool exchangeWithin(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& numbers) {
+  if (cells.underside == nullptr)
+    return cells.threshold == nullptr ? exchangeWithinOf<false, false>(cells, pair_count, numbers)
+                                      : exchangeWithinOf<false, true>(cells, pair_count, numbers);
+  return cells.threshold == nullptr ? exchangeWithinOf<true, false>(cells, pair_count, numbers)
+                                    : exchangeWithinOf<true, true>(cells, pair_count, numbers);
 }
 
-void slopeCells(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
-                int32_t* __restrict height_there, int32_t* __restrict room, int32_t* __restrict soil) {
+void slopeCells(const ExchangeCells& cells, const int32_t* material, int n, const SlopeNumbers* numbers,
+                int obstacle_threshold, const SlopeRow& row) {
+  const int32_t* height = cells.height;
+  const int32_t* underside = cells.underside;
+  const int32_t* bedrock = cells.bedrock;
+  int32_t* __restrict height_there = row.height;
+  int32_t* __restrict room = row.room;
+  int32_t* __restrict soil = row.soil;
   for (int i = 0; i < n; ++i) {
     const int32_t value = height[i];
     height_there[i] = value;
     room[i] = rules::roomBeneath(value, underside[i], obstacle_threshold);
     soil[i] = value - bedrock[i];
   }
+  int32_t* __restrict threshold = row.threshold;
+  int32_t* __restrict diagonal = row.diagonal_threshold;
+  int32_t* __restrict roughness = row.roughness;
+  int32_t* __restrict amount = row.amount;
+  for (int i = 0; i < n; ++i) {
+    const SlopeNumbers& own = numbers[material == nullptr ? 0 : material[i]];
+    threshold[i] = own.threshold;
+    diagonal[i] = own.diagonal_threshold;
+    roughness[i] = own.roughness;
+    amount[i] = own.inverse;
+  }
 }
 
-bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end,
-                  const SlopeNumbers& numbers) {
+bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end) {
   constexpr int kMost = SlopeRow::kMostCells + 2 * SlopeRow::kHalo;
-  const int n = end - begin, threshold = numbers.threshold;
+  const int n = end - begin;
   const int32_t* const height[3] = {above.height + begin, row.height + begin, below.height + begin};
   const int32_t* const room[3] = {above.room + begin, row.room + begin, below.room + begin};
   const int32_t* soil = row.soil + begin;
+  const int32_t* threshold = row.threshold + begin;
+  const int32_t* roughness = row.roughness + begin;
   int32_t* __restrict amount = row.amount + begin;
   int32_t drops[kMost], counts[kMost];
   int any = 0;
@@ -222,7 +252,7 @@ bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& be
     for (int d = 0; d < 8; ++d) {
       const int j = i + rules::neighbourX(d), line = 1 + rules::neighbourY(d);
       const int drop = height[1][i] - height[line][j], room_there = room[line][j];
-      const bool gives = rules::slopeGives(drop, threshold, room_there);
+      const bool gives = rules::slopeGives(drop, threshold[i], room_there);
       sum += gives ? rules::minInt(drop, rules::kDifferenceMost) : 0;
       count += gives ? 1 : 0;
     }
@@ -234,8 +264,7 @@ bool slopeAmounts(const SlopeRow& above, const SlopeRow& row, const SlopeRow& be
     for (int i = 0; i < n; ++i) amount[i] = 0;
     return false;
   }
-  const int roughness = numbers.roughness;
-  for (int i = 0; i < n; ++i) amount[i] = rules::slopeAmount(drops[i], counts[i], roughness, soil[i]);
+  for (int i = 0; i < n; ++i) amount[i] = rules::slopeAmount(drops[i], counts[i], roughness[i], soil[i]);
   return true;
 }
 
@@ -256,37 +285,63 @@ inline void flowsOfRow(const SlopeRow& row, const SlopeRow& below, int n, int32_
   }
 }
 
-inline int32_t averageFlow(const SlopeRow& from, int i, const SlopeRow& to, int j, int threshold) {
+inline int32_t averageFlow(const SlopeRow& from, int i, const SlopeRow& to, int j) {
   // All is read first: a load that hangs on a condition keeps the loop from being vectorised.
   const int drop = from.height[i] - to.height[j], room = to.room[j], amount = from.amount[i];
+  const int threshold = from.threshold[i];
   const int flow = rules::slopeFlow(amount, room);
   return rules::slopeGives(drop, threshold, room) ? flow : 0;
 }
 
-void averageFlows(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, int32_t* carry,
-                  int32_t* out) {
-  const int threshold = numbers.threshold;
-  const auto flow = [threshold](const SlopeRow& a, int i, const SlopeRow& b, int j) {
-    return averageFlow(a, i, b, j, threshold) - averageFlow(b, j, a, i, threshold);
+void averageFlows(const SlopeRow& row, const SlopeRow& below, int n, int32_t* carry, int32_t* out) {
+  const auto flow = [](const SlopeRow& a, int i, const SlopeRow& b, int j) {
+    return averageFlow(a, i, b, j) - averageFlow(b, j, a, i);
   };
   flowsOfRow(row, below, n, carry, out, flow, flow);
 }
 
-void fluxFlows(const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers, int32_t* carry,
-               int32_t* out) {
-  const int roughness = numbers.roughness;
-  const auto flowOver = [roughness](int threshold) {
-    return [roughness, threshold](const SlopeRow& a, int i, const SlopeRow& b, int j) {
-      return rules::slopeFlux(a.height[i], b.height[j], threshold, roughness, a.soil[i], b.soil[j], a.room[i],
-                              b.room[j]);
+void fluxFlows(const SlopeRow& row, const SlopeRow& below, int n, int32_t* carry, int32_t* out) {
+  const auto flowOver = [](auto threshold) {
+    return [threshold](const SlopeRow& a, int i, const SlopeRow& b, int j) {
+      return rules::slopeFlux(a.height[i], b.height[j], (a.*threshold)[i], (b.*threshold)[j], a.roughness[i],
+                              b.roughness[j], a.soil[i], b.soil[j], a.room[i], b.room[j]);
     };
   };
-  flowsOfRow(row, below, n, carry, out, flowOver(numbers.threshold), flowOver(numbers.diagonal_threshold));
+  flowsOfRow(row, below, n, carry, out, flowOver(&SlopeRow::threshold), flowOver(&SlopeRow::diagonal_threshold));
 }
 
-void scatterFlows(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int n, const SlopeNumbers& numbers,
-                  int32_t* const change[3]) {
-  const int threshold = numbers.threshold;
+template <int kWeights>
+[[gnu::flatten]] void driftFlowsOf(const SlopeRow& row, const SlopeRow& below, int n, const rules::DriftStep& all,
+                                   int x, int y, rules::uint phase, int32_t* __restrict carry,
+                                   int32_t* __restrict out) {
+  rules::DriftStep step = all;
+  step.weights = kWeights;
+  const auto cellOf = [](const SlopeRow& of, int i) {
+    return rules::DriftCell{of.height[i],    of.soil[i],      of.room[i],
+                            of.threshold[i], of.roughness[i], rules::uint(of.amount[i])};
+  };
+  int32_t east[SlopeRow::kMostCells + 1];  // [cell + 1]
+  for (int i = -1; i < n; ++i)
+    east[i + 1] = rules::driftFlow(step, cellOf(row, i), cellOf(row, i + 1), (row.push_x[i] + row.push_x[i + 1]) >> 1,
+                                   rules::driftDither(x + i, y, 0, phase));
+  for (int i = 0; i < n; ++i) {
+    const int32_t south =
+        rules::driftFlow(step, cellOf(row, i), cellOf(below, i), (row.push_y[i] + below.push_y[i]) >> 1,
+                         rules::driftDither(x + i, y, 1, phase));
+    out[i] = row.height[i] + carry[i] + east[i] - east[i + 1] - south;
+    carry[i] = south;
+  }
+}
+
+void driftFlows(const SlopeRow& row, const SlopeRow& below, int n, const rules::DriftStep& step, int x, int y,
+                rules::uint phase, int32_t* carry, int32_t* out) {
+  const auto flows = step.weights == rules::kDriftUnweighted       ? driftFlowsOf<rules::kDriftUnweighted>
+                     : step.weights == rules::kDriftByDisplacement ? driftFlowsOf<rules::kDriftByDisplacement>
+                                                                   : driftFlowsOf<rules::kDriftBySlope>;
+  flows(row, below, n, step, x, y, phase, carry, out);
+}
+
+void scatterFlows(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int n, int32_t* const change[3]) {
   const SlopeRow* const rows[3] = {&above, &row, &below};
   int32_t lost[SlopeRow::kMostCells] = {};
   for (int d = 0; d < 8; ++d) {
@@ -294,7 +349,7 @@ void scatterFlows(const SlopeRow& above, const SlopeRow& row, const SlopeRow& be
     const SlopeRow& to = *rows[line];
     int32_t* __restrict gained = change[line] + dx;
     for (int i = 0; i < n; ++i) {
-      const int32_t flow = averageFlow(row, i, to, i + dx, threshold);
+      const int32_t flow = averageFlow(row, i, to, i + dx);
       lost[i] += flow;
       gained[i] += flow;
     }
@@ -323,13 +378,12 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            carryFree,
                                                            mergeFree,
                                                            exchangeRows,
-                                                           exchangeRowsBeneath,
                                                            exchangeWithin,
-                                                           exchangeWithinBeneath,
                                                            slopeCells,
                                                            slopeAmounts,
                                                            averageFlows,
                                                            fluxFlows,
+                                                           driftFlows,
                                                            scatterFlows};
 
 }  // namespace spoor

@@ -13,7 +13,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x53525053;  // "SPRS"
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint8_t kPackRecord = 1;
 constexpr std::uint8_t kTickRecord = 2;
 
@@ -41,6 +41,8 @@ std::vector<std::uint8_t> tickBytes(const TickRecord& record) {
   for (const Pose& pose : record.poses) putPose(writer, pose);
   writer.put(std::uint32_t(record.craters.size()));
   for (const Crater& crater : record.craters) putCrater(writer, crater);
+  writer.put(std::uint32_t(record.snowfalls.size()));
+  for (const Snowfall& snowfall : record.snowfalls) putSnowfall(writer, snowfall);
   if (record.parameters) putParameters(writer, *record.parameters);
   return recordBytes(kTickRecord, writer.bytes);
 }
@@ -137,6 +139,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::string& pa
   if (!pack) return Error{path + ": " + pack.error()};
   reader->id_ = packId((*record)->payload);
   reader->pack_ = std::move(*pack);
+  reader->snowfall_count_ = reader->pack_.snowfalls.size();
   return reader;
 }
 
@@ -188,15 +191,22 @@ Result<std::optional<TickRecord>> SessionReader::next() {
     return Error{where + "tick record does not fit the pack's bodies"};
   for (std::size_t i = 0; i < count; ++i) tick.poses.push_back(getPose(reader));
   const std::size_t crater_count = reader.get<std::uint32_t>();
-  const std::size_t crater_bytes = crater_count * kCraterBytes;
-  if (reader.failed() || (reader.left() != crater_bytes && reader.left() != crater_bytes + kParametersBytes))
-    return Error{where + "tick record is of a wrong size"};
+  if (crater_count > reader.left() / kCraterBytes) return Error{where + "tick record is of a wrong size"};
   for (std::size_t i = 0; i < crater_count; ++i) tick.craters.push_back(getCrater(reader));
+  const std::size_t snowfall_count = reader.get<std::uint32_t>();
+  if (snowfall_count > reader.left() / kSnowfallBytes) return Error{where + "tick record is of a wrong size"};
+  for (std::size_t i = 0; i < snowfall_count; ++i) tick.snowfalls.push_back(getSnowfall(reader));
+  const std::size_t parameter_bytes = parametersBytes(pack_.materials.size());
+  if (reader.failed() || (reader.left() != 0 && reader.left() != parameter_bytes))
+    return Error{where + "tick record is of a wrong size"};
   if (Status status = validateNewCraters(pack_, tick.craters, crater_count_); !status)
     return Error{where + status.error()};
   for (const Crater& crater : tick.craters)
     if (crater.tick != tick.tick || crater.id != crater_count_++)
       return Error{where + "a crater of another tick or id"};
+  if (Status status = validateNewSnowfalls(pack_, tick.snowfalls, tick.tick, snowfall_count_); !status)
+    return Error{where + status.error()};
+  snowfall_count_ += snowfall_count;
   if (reader.left() > 0) {
     tick.parameters = getParameters(reader);
     if (Status status = validateParameters(pack_, *tick.parameters); !status) return Error{where + status.error()};

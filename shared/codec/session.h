@@ -24,6 +24,7 @@ struct TickRecord {
   Ledger ledger;
   std::optional<Parameters> parameters = {};  // from this tick on, where they changed
   std::vector<Crater> craters = {};           // that came with it
+  std::vector<Snowfall> snowfalls = {};       // the same
 };
 
 /// Appends to a session file from a thread of its own: append() never waits for the disk.
@@ -66,7 +67,8 @@ class SessionReader {
   PackId id_;
   std::int64_t position_ = 0;
   std::int32_t last_tick_ = 0;
-  std::size_t crater_count_ = 0;  // of the ticks read
+  std::size_t crater_count_ = 0;    // of the ticks read
+  std::size_t snowfall_count_ = 0;  // the same, and of the pack
   bool truncated_ = false;
 };
 

@@ -32,6 +32,14 @@ Status readCraters(ByteReader& reader, const ScenePack& pack, WorldState& state)
   return {};
 }
 
+Status readSnowfalls(ByteReader& reader, const ScenePack& pack, WorldState& state) {
+  const std::size_t count = reader.get<std::uint32_t>();
+  if (count > kSnowfallsLimit || count * kSnowfallBytes > reader.left())
+    return Error{std::to_string(count) + " snowfalls announced, more than there can be"};
+  for (std::size_t i = 0; i < count; ++i) state.snowfalls.push_back(getSnowfall(reader));
+  return validateNewSnowfalls(pack, state.snowfalls, 1, 0);
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerrain& base) {
@@ -43,15 +51,16 @@ std::vector<std::uint8_t> encodeSnapshot(const WorldState& state, const BaseTerr
   writer.put(state.ledger.events);
   writer.put(std::uint32_t(state.craters.size()));
   for (const Crater& crater : state.craters.records()) putCrater(writer, crater);
+  writer.put(std::uint32_t(state.snowfalls.size()));
+  for (const Snowfall& snowfall : state.snowfalls) putSnowfall(writer, snowfall);
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
   std::vector<TileChange> changes;
-  PlaneCells ground;
-  const DormantGround dormant{&base, &state.craters};
+  const DormantGround dormant = dormantGround(state, base);
   for (const Tile* tile : state.tiles.sorted()) {
-    dormant.fillHeights(tile->at, ground);
-    changes.push_back(differenceOf(*tile, ground, nullptr, kDormantVersion));
+    const auto before = makeTile(tile->at, dormant, state.tick);
+    changes.push_back(differenceOf(*tile, planesOf(*before), kDormantVersion));
   }
   writer.putBytes(encodeTiles(changes));
   return std::move(writer.bytes);
@@ -70,6 +79,7 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
     if (budget > kBudgetLimit || budget < -kBudgetLimit)
       return Error{"snapshot: a budget of " + std::to_string(budget) + " is more than its tiles can hold"};
   if (Status status = readCraters(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
+  if (Status status = readSnowfalls(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
   if (Status status = validateParameters(base.pack(), state.parameters); !status)
@@ -86,7 +96,7 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   for (const TileChange& change : *changes)
     if (change.base_version != kDormantVersion || change.new_version > state.tick)
       return Error{"snapshot: a tile is not against the base"};
-  if (Status status = applyTiles(state, base, *changes, state.craters.size()); !status)
+  if (Status status = applyTiles(state, base, *changes, state.tick, state.craters.size()); !status)
     return Error{"snapshot: " + status.error()};
   state.ledger.craters = crater_budget;
   state.ledger.events = event_budget;

@@ -8,6 +8,7 @@
 #include "shared/base/bytes.h"
 #include "shared/base/json.h"
 #include "shared/base/kernels.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 namespace {
@@ -21,7 +22,9 @@ std::int32_t unzigzag(std::uint32_t v) { return std::int32_t((v >> 1) ^ (0u - (v
 
 /// The differences of a plane.
 std::vector<std::int32_t>& planeOf(TileChange& change, int plane) {
-  return plane == int(Plane::height) ? change.difference : change.compaction;
+  return plane == int(Plane::height)      ? change.difference
+         : plane == int(Plane::compacted) ? change.compaction
+                                          : change.material;
 }
 const std::vector<std::int32_t>& planeOf(const TileChange& change, int plane) {
   return planeOf(const_cast<TileChange&>(change), plane);
@@ -66,12 +69,19 @@ Status checkEntry(const Entry& entry, TileCoordinate extent) {
 
 }  // namespace
 
-TileChange differenceOf(const Tile& tile, const PlaneCells& before, const PlaneCells* compacted_before,
-                        std::int32_t base_version) {
+TilePlanes planesOf(const Tile& tile) {
+  TilePlanes planes;
+  for (int plane = 0; plane < kPlaneCount; ++plane) planes[plane] = tile.planes[plane].get();
+  return planes;
+}
+
+TileChange differenceOf(const Tile& tile, const TilePlanes& before, std::int32_t base_version) {
   constexpr int size = rules::kTileSize;
   static const PlaneCells none{};
-  const PlaneCells* const after[kPlaneCount] = {&tile.height(), tile.compacted() != nullptr ? tile.compacted() : &none};
-  const PlaneCells* const old[kPlaneCount] = {&before, compacted_before != nullptr ? compacted_before : &none};
+  TilePlanes after = planesOf(tile), old = before;
+  for (TilePlanes* planes : {&after, &old})
+    for (const PlaneCells*& plane : *planes)
+      if (plane == nullptr) plane = &none;
   int x_first = size, x_last = -1, y_first = size, y_last = -1;
   bool differs[kPlaneCount] = {};
   for (int plane = 0; plane < kPlaneCount; ++plane) {
@@ -90,7 +100,7 @@ TileChange differenceOf(const Tile& tile, const PlaneCells& before, const PlaneC
       differs[plane] = true;
     }
   }
-  TileChange change{tile.at, base_version, tile.version_tick, tile.wake_mask, tile.hash, 0, 0, 0, 0, {}, {}};
+  TileChange change{tile.at, base_version, tile.version_tick, tile.wake_mask, tile.hash, 0, 0, 0, 0, {}, {}, {}};
   if (x_last < 0) return change;
   change.x = std::uint8_t(x_first);
   change.y = std::uint8_t(y_first);
@@ -199,17 +209,21 @@ Result<std::vector<TileChange>> decodeTiles(std::span<const std::uint8_t> bytes,
 
 namespace {
 
+/// What a plane's values may be, in the world.
+std::int32_t highestOf(Plane plane, const ScenePack& pack) {
+  return plane == Plane::material ? std::int32_t(pack.materials.size()) - 1 : rules::kHeightLimit;
+}
+
 /// A tile's new cells, checked, waiting for all the others to be checked too.
 struct Prepared {
-  Tile* live = nullptr;                   // where it was live already
-  std::unique_ptr<Tile> fresh;            // where it was dormant
-  std::unique_ptr<PlaneCells> height;     // its new cells
-  std::unique_ptr<PlaneCells> compacted;  // the same; nullptr: as it was
-  std::int64_t gained = 0;                // by craters
-  std::unique_ptr<TileCraters> craters;   // where new ones met it
+  Tile* live = nullptr;                                         // where it was live already
+  std::unique_ptr<Tile> fresh;                                  // where it was dormant
+  std::array<std::unique_ptr<PlaneCells>, kPlaneCount> planes;  // its new cells; nullptr: as they were
+  std::int64_t gained = 0;                                      // by craters
+  std::unique_ptr<TileCraters> craters;                         // where new ones met it
 };
 
-Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change,
+Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileChange& change, std::int32_t tick,
                          std::size_t first_new_crater) {
   Prepared prepared;
   prepared.live = state.tiles.find(change.at);
@@ -218,40 +232,42 @@ Result<Prepared> prepare(WorldState& state, const BaseTerrain& base, const TileC
     return Error{nameOf(change.at) + ": change is against version " + std::to_string(change.base_version) +
                  ", held is " + std::to_string(held)};
   if (prepared.live == nullptr) {
-    prepared.fresh = makeTile(change.at, {&base, &state.craters}, change.new_version);
-    prepared.gained = prepared.fresh->ground - prepared.fresh->initial;
+    DormantGround dormant = dormantGround(state, base);
+    dormant.tick = tick;
+    prepared.fresh = makeTile(change.at, dormant, change.new_version);
+    prepared.gained = prepared.fresh->first_craters;
   }
   Tile& tile = prepared.live != nullptr ? *prepared.live : *prepared.fresh;
-  prepared.height = std::make_unique<PlaneCells>(tile.height());
+  for (int plane = 0; plane < kPlaneCount; ++plane)
+    if (plane == int(Plane::height) || !planeOf(change, plane).empty())
+      prepared.planes[plane] = tile.planes[plane] != nullptr ? std::make_unique<PlaneCells>(*tile.planes[plane])
+                                                             : std::make_unique<PlaneCells>();
   if (prepared.live != nullptr && first_new_crater < state.craters.size()) {
     if (tile.craters != nullptr) prepared.craters = std::make_unique<TileCraters>(*tile.craters);
-    prepared.gained =
-        addCraters(change.at, *prepared.height, *tile.bedrock, state.craters, first_new_crater, prepared.craters);
+    prepared.gained = addCraters(change.at, *prepared.planes[int(Plane::height)], *tile.bedrock, state.craters,
+                                 first_new_crater, prepared.craters);
   }
-  if (!change.compaction.empty())
-    prepared.compacted =
-        tile.compacted() != nullptr ? std::make_unique<PlaneCells>(*tile.compacted()) : std::make_unique<PlaneCells>();
-  std::size_t next = 0;
-  for (int y = change.y; y < change.y + change.height; ++y)
-    for (int x = change.x; x < change.x + change.width; ++x) {
+  std::uint64_t hash = 0;
+  for (int plane = 0; plane < kPlaneCount; ++plane) {
+    const std::vector<std::int32_t>& difference = planeOf(change, plane);
+    PlaneCells* cells = prepared.planes[plane].get();
+    for (std::size_t next = 0; next < difference.size(); ++next) {
+      const int x = change.x + int(next) % change.width, y = change.y + int(next) / change.width;
       const auto i = std::size_t(y * rules::kTileSize + x);
-      const std::int64_t height = std::int64_t((*prepared.height)[i]) + change.difference[next];
+      const std::int64_t value = std::int64_t((*cells)[i]) + difference[next];
       const bool inside = change.at.x * rules::kTileSize + x < base.pack().width_cells &&
                           change.at.y * rules::kTileSize + y < base.pack().height_cells;
-      if (height < (*tile.bedrock)[i] || height > (inside ? rules::kHeightLimit : 0))
-        return Error{nameOf(change.at) + ": a height lies below bedrock, above the limit or outside the world"};
-      (*prepared.height)[i] = std::int32_t(height);
-      if (prepared.compacted != nullptr) {
-        const std::int64_t compacted = std::int64_t((*prepared.compacted)[i]) + change.compaction[next];
-        if (compacted < 0 || compacted > (inside ? rules::kHeightLimit : 0))
-          return Error{nameOf(change.at) + ": compacted soil below 0, above the limit or outside the world"};
-        (*prepared.compacted)[i] = std::int32_t(compacted);
-      }
-      ++next;
+      const std::int32_t lowest = plane == int(Plane::height) ? (*tile.bedrock)[i] : 0;
+      if (value < lowest || value > (inside ? highestOf(Plane(plane), base.pack()) : 0))
+        return Error{nameOf(change.at) + ": " +
+                     (plane == int(Plane::height)      ? "a height lies below bedrock"
+                      : plane == int(Plane::compacted) ? "compacted soil below 0"
+                                                       : "a material that there is not") +
+                     ", above the limit or outside the world"};
+      (*cells)[i] = std::int32_t(value);
     }
-  const PlaneCells* compacted = prepared.compacted != nullptr ? prepared.compacted.get() : tile.compacted();
-  const std::uint64_t hash =
-      planeHash(change.at, Plane::height, prepared.height.get()) + planeHash(change.at, Plane::compacted, compacted);
+    hash += planeHash(change.at, Plane(plane), cells != nullptr ? cells : tile.planes[plane].get());
+  }
   if (hash != change.hash)
     return Error{nameOf(change.at) + ": hash " + hexText(hash) + " here, " + hexText(change.hash) + " announced"};
   return prepared;
@@ -261,6 +277,7 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
   if (prepared.fresh != nullptr) {
     prepared.live = &state.tiles.insert(std::move(prepared.fresh));
     state.ledger.initial += prepared.live->initial;
+    state.ledger.events += prepared.live->first_snow;
   } else {
     state.tiles_hash -= tileStateHash(*prepared.live);
     state.ledger.ground -= prepared.live->ground;
@@ -268,9 +285,9 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
   }
   state.ledger.craters += prepared.gained;
   Tile& tile = *prepared.live;
-  tile.planes[int(Plane::height)] = std::move(prepared.height);
+  for (int plane = 0; plane < kPlaneCount; ++plane)
+    if (prepared.planes[plane] != nullptr) tile.planes[plane] = std::move(prepared.planes[plane]);
   if (prepared.craters != nullptr) tile.craters = std::move(prepared.craters);
-  if (prepared.compacted != nullptr) tile.planes[int(Plane::compacted)] = std::move(prepared.compacted);
   tile.version_tick = change.new_version;
   state.tiles.setWake(tile, change.wake_mask);
   tile.hash = change.hash;
@@ -283,7 +300,7 @@ void commit(WorldState& state, const TileChange& change, Prepared prepared) {
 
 }  // namespace
 
-Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes,
+Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const TileChange> changes, std::int32_t tick,
                   std::size_t first_new_crater) {
   const auto fresh = std::size_t(std::ranges::count(changes, kDormantVersion, &TileChange::base_version));
   if (state.tiles.size() + fresh > kSnapshotTilesLimit)
@@ -296,7 +313,7 @@ Status applyTiles(WorldState& state, const BaseTerrain& base, std::span<const Ti
   std::vector<Prepared> prepared;
   prepared.reserve(changes.size());
   for (const TileChange& change : changes) {
-    Result<Prepared> one = prepare(state, base, change, first_new_crater);
+    Result<Prepared> one = prepare(state, base, change, tick, first_new_crater);
     if (!one) return Error{one.error()};
     prepared.push_back(std::move(*one));
   }
@@ -318,12 +335,18 @@ Status applyTick(WorldState& state, const BaseTerrain& base, const TickUpdate& u
   if (Status status = validateNewCraters(base.pack(), update.craters, state.craters.size(), state.craters.hashCells());
       !status)
     return Error{tick_name + status.error()};
+  if (Status status = validateNewSnowfalls(base.pack(), update.snowfalls, update.tick, state.snowfalls.size()); !status)
+    return Error{tick_name + status.error()};
   const std::size_t crater_count = state.craters.size();
   for (std::size_t i = 0; i < update.craters.size(); ++i)
     if (update.craters[i].tick != update.tick || update.craters[i].id != crater_count + i)
       return Error{tick_name + "crater " + std::to_string(crater_count + i) + " has another id or tick"};
   state.craters.add(update.craters);
-  if (Status status = applyTiles(state, base, *changes, crater_count); !status) {
+  state.snowfalls.insert(state.snowfalls.end(), update.snowfalls.begin(), update.snowfalls.end());
+  SnowOfTick snow(state, base.pack(), update.tick, SnowTiles::all);
+  if (Status status = applyTiles(state, base, *changes, update.tick, crater_count); !status) {
+    snow.takeBack(state);
+    state.snowfalls.resize(state.snowfalls.size() - update.snowfalls.size());
     state.craters.truncate(crater_count);
     return Error{tick_name + status.error()};
   }

@@ -18,14 +18,16 @@ CellBox grown(const CellBox& box, int margin, const ScenePack& pack) {
 }
 
 /// How many sub-steps keep every part of a body within one cell of its place a sub-step before: its own shift, and its
-/// reach times the angle it turns by. Spin is left out: the rim of a rolling wheel rests where it touches the ground.
+/// reach times the angle it turns by and the share it grows by. Spin is left out: the rim of a rolling wheel rests
+/// where it touches the ground.
 int subStepsFor(std::int32_t cell_q, std::int32_t reach_q, const Pose& from, const Pose& to) {
   constexpr std::int64_t kRadiansPerTurnQ32 = 411775;  // 2 pi / 65536
   const auto angle = [](Turn a, Turn b) { return std::abs(std::int64_t(std::int16_t(std::uint16_t(b - a)))); };
   const std::int64_t turned = angle(from.yaw, to.yaw) + angle(from.pitch, to.pitch) + angle(from.roll, to.roll);
   const std::int64_t shift =
       std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
-  const std::int64_t farthest = shift + ((reach_q * turned * kRadiansPerTurnQ32) >> 32);
+  const std::int64_t grown = std::abs(std::int64_t(to.scale_q16) - from.scale_q16);
+  const std::int64_t farthest = shift + ((reach_q * turned * kRadiansPerTurnQ32) >> 32) + (reach_q * grown >> 16);
   return int(std::clamp<std::int64_t>(-floorDiv(-farthest, cell_q), 1, kSubStepLimit + 1));
 }
 
@@ -183,11 +185,28 @@ class Planner {
       if (!moves(i)) continue;
       // Where it stood, soil that it held up may fall now.
       addStood(plan.stood, placeBody(pack_, int(i), state_.poses[i]));
-      for (int step = 1; step <= step_count_; ++step)
-        placed_[i].push_back(placeBody(pack_, int(i), interpolate(state_.poses[i], poses_[i], step, step_count_)));
+      Pose before = state_.poses[i];
+      for (int step = 1; step <= step_count_; ++step) {
+        const Pose pose = interpolate(state_.poses[i], poses_[i], step, step_count_);
+        placed_[i].push_back(placeBody(pack_, int(i), pose));
+        aimPush(placed_[i].back(), before, pose);
+        before = pose;
+      }
       for (const PlacedBody& body : placed_[i]) addTiles(activeBox(body), tiles_);
       taking_part_.push_back(i);
     }
+  }
+
+  void aimPush(PlacedBody& body, const Pose& from, const Pose& to) const {
+    const std::int64_t x = std::int64_t(to.x_q) - from.x_q, y = std::int64_t(to.y_q) - from.y_q;
+    const std::int64_t length = isqrt(std::uint64_t(x * x) + std::uint64_t(y * y));
+    if (length == 0) return;
+    body.force_cell = std::int64_t(pack_.bodies[std::size_t(body.body_index)].force_n) * pack_.cell_q;
+    const auto inQ30 = [length](std::int64_t part) {
+      return std::int32_t(std::clamp<std::int64_t>(floorDiv(part << 30, length), -(1 << 30), 1 << 30));
+    };
+    body.direction_x_q30 = inQ30(x);
+    body.direction_y_q30 = inQ30(y);
   }
 
   void addStood(SubStep& stood, PlacedBody body) {
@@ -249,8 +268,8 @@ class Planner {
       sub_step.bodies.push_back(placed_[body].size() == 1 ? placed_[body].front()
                                                           : std::move(placed_[body][std::size_t(step)]));
     sub_step.domains = std::move(domains);
-    sub_step.sweep_count =
-        (step + 1) * parameters_.sweeps_per_tick / step_count_ - step * parameters_.sweeps_per_tick / step_count_;
+    const int sweeps = sweepsOf(parameters_);
+    sub_step.sweep_count = (step + 1) * sweeps / step_count_ - step * sweeps / step_count_;
     return sub_step;
   }
 

@@ -42,9 +42,10 @@ struct BackendMemory {
   std::vector<BufferBytes> buffers;  // what most of them are for, on the device where there is one
 };
 
-/// Runs stages 2 and 4 to 9 of planned ticks, on one state until forget(). A tick goes through three calls, in their
-/// order, and may overlap with the next: submit(1), settle(1), submit(2), collect(1), settle(2), ... Backends differ in
-/// schedule only: the same state and plan give the same bits. One thread at a time, any thread.
+/// Runs stages 2 (with the snow of tiles that are awake) and 4 to 9 of planned ticks, on one state until forget(). A
+/// tick goes through three calls, in their order, and may overlap with the next: submit(1), settle(1), submit(2),
+/// collect(1), settle(2), ... Backends differ in schedule only: the same state and plan give the same bits. One thread
+/// at a time, any thread.
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -67,6 +68,10 @@ class Backend {
   /// Errors: the device is lost; the state is then of no further use.
   [[nodiscard]] virtual Status collect(WorldState& state, std::vector<TileChange>& changes) = 0;
 
+  /// Says that the state's tiles have other cells than the ticks gave them: copies of them are out of date. Only of
+  /// tiles that no unfinished tick changes.
+  virtual void tilesChanged(std::span<Tile* const> tiles) = 0;
+
   /// Drops everything kept of a state, unfinished ticks too: the next tick may be of another one.
   virtual void forget() = 0;
 
@@ -84,7 +89,8 @@ std::unique_ptr<Backend> makeNativeBackend(const NativeOptions& options = {});
 struct ActiveTiles {
   std::vector<Tile*> tiles;                  // in the plan's order
   std::vector<std::unique_ptr<Tile>> fresh;  // those among them that are not in the state's store yet, in that order
-  std::vector<CellBox> cratered;  // [tiles] of the others, what new craters meet (cratersWithin); empty: nothing
+  std::vector<CellBox> cratered;     // [tiles] of the others, what new craters meet (cratersWithin); empty: nothing
+  std::vector<std::uint8_t> snowed;  // [tiles] 1: of the plan's in_snow
 };
 
 /// Finds a plan's tiles in the state and makes those that are dormant: with all craters, those of this tick too.

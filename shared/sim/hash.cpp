@@ -43,8 +43,10 @@ std::vector<TileOutcome> runHash(const NativeContext& context) {
     const bool moved = fetchPlane(run, tile.at, area.height, tile.height(), before);
     const bool compacted = fetchCompacted(area, run, tile, compacted_before);
     if (!moved && !compacted) return;
-    outcomes[i].change = differenceOf(tile, moved ? before : tile.height(),
-                                      compacted ? &compacted_before : tile.compacted(), tile.version_tick);
+    TilePlanes old = planesOf(tile);
+    if (moved) old[int(Plane::height)] = &before;
+    if (compacted) old[int(Plane::compacted)] = &compacted_before;
+    outcomes[i].change = differenceOf(tile, old, tile.version_tick);
     outcomes[i].hash = tileHash(tile);
     outcomes[i].ground = context.kernels.sum(tile.height().data(), rules::kTileCells);
     if (tile.compacted() != nullptr)

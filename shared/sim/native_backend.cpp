@@ -6,6 +6,7 @@
 #include "shaders/rules/exchange.h"
 #include "shared/base/assert.h"
 #include "shared/sim/native_stages.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 namespace {
@@ -24,6 +25,7 @@ std::int64_t pairBytes(SlopeRule rule) {
       return 24;  // two heights in and out, two bedrocks in
     case SlopeRule::flux:
     case SlopeRule::interleaved:
+    case SlopeRule::drift:
       return 16 / 4;  // per cell: height, bedrock, underside in, new height out
     case SlopeRule::scatter:
       return 28 / 4;  // per cell: a copy before it, and new heights in and out
@@ -53,7 +55,7 @@ class NativeBackend final : public Backend {
   Result<TickEffect> settle(WorldState& state) override {
     SPOOR_ASSERT(submitted_.has_value());
     const auto [plan, base] = *std::exchange(submitted_, std::nullopt);
-    const NativeContext context{base->pack(), plan.parameters, *kernels_, pool_, area_};
+    const NativeContext context{base->pack(), plan.tick, plan.parameters, *kernels_, pool_, area_};
     TickEffect effect;
     ActiveTiles active;
     {
@@ -62,11 +64,12 @@ class NativeBackend final : public Backend {
     }
     {
       StageTimer timer(effect.stage_ms, Stage::craters);
+      runSnow(plan, base->pack(), active, state);
       runCraters(plan, active, state);
     }
     {
       StageTimer timer(effect.stage_ms, Stage::active);
-      area_.gather(active.tiles, plan.parameters.compression_q16 > 0, pool_);
+      area_.gather(active.tiles, plan.parameters, pool_);
     }
     effect.active_cells = std::int64_t(area_.tiles.size()) * rules::kTileCells;
     effect.bytes_moved = effect.active_cells * (kGatherBytes + kHashBytes);
@@ -75,7 +78,7 @@ class NativeBackend final : public Backend {
       area_.clearUnderside(context.pack, pool_);
       runStood(context, plan.stood);
     }
-    if (plan.parameters.compression_q16 > 0) effect.bytes_moved += effect.active_cells * kCompactionBytes;
+    if (anyCompression(plan.parameters)) effect.bytes_moved += effect.active_cells * kCompactionBytes;
     int sweep = 0;
     for (const SubStep& sub_step : plan.sub_steps) {
       runSubStep(context, sub_step, sweep, effect);
@@ -90,6 +93,8 @@ class NativeBackend final : public Backend {
 
   Status collect(WorldState&, std::vector<TileChange>&) override { return {}; }  // settle() has done it all
 
+  void tilesChanged(std::span<Tile* const>) override {}
+
   void forget() override { submitted_.reset(); }
 
   BackendMemory memory() const override {
@@ -100,6 +105,11 @@ class NativeBackend final : public Backend {
   }
 
  private:
+  void runSnow(const TickPlan& plan, const ScenePack& pack, const ActiveTiles& active, WorldState& state) {
+    for (std::size_t i = 0; i < active.tiles.size(); ++i)
+      if (active.snowed[i] != 0) snowOnTile(*active.tiles[i], pack, plan.tick, state);
+  }
+
   /// Stage craters: what new ones do to live tiles.
   void runCraters(const TickPlan& plan, const ActiveTiles& active, WorldState& state) {
     std::vector<std::size_t> touched;
@@ -141,7 +151,7 @@ class NativeBackend final : public Backend {
         runPenetration(context, domain);
       }
       effect.penetrating_cells += domain.penetrating_count;
-      if (domain.penetratingLeft() == 0) continue;
+      if (domain.penetratingLeft() == 0 || context.parameters.displacement == Displacement::none) continue;
       {
         StageTimer timer(effect.stage_ms, Stage::nearest);
         runNearest(context, domain);
@@ -153,6 +163,7 @@ class NativeBackend final : public Backend {
       effect.bytes_moved += domain.bytes_moved;
     }
     StageTimer timer(effect.stage_ms, Stage::relax);
+    runPush(context, sub_step);
     const std::int64_t pairs = runRelax(context, sweep, sub_step.sweep_count, skip_settled_);
     effect.pairs_visited += pairs;
     const std::int64_t bytes = pairs * pairBytes(context.parameters.slopes);

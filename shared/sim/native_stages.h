@@ -13,6 +13,7 @@ namespace spoor {
 /// What the native stages of one backend work with.
 struct NativeContext {
   const ScenePack& pack;
+  std::int32_t tick;
   const Parameters& parameters;
   const Kernels& kernels;
   ThreadPool& pool;
@@ -118,8 +119,12 @@ std::int64_t displaceInSteps(const NativeContext& context, DomainWork& domain, s
 /// Returns the pairs of cells visited.
 std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled);
 
-/// The same by rules/slope.h, as runRelax calls it.
-void runSlopes(const NativeContext& context, int sweep_count);
+/// The same by rules/slope.h and rules/drift.h, as runRelax calls it.
+void runSlopes(const NativeContext& context, int first_sweep, int sweep_count);
+
+/// Before the sweeps of rule `drift`: how bodies that move push the soil beneath them, in the area's pushes. Where
+/// bodies displace nothing by themselves (Displacement::none) their undersides go away after that.
+void runPush(const NativeContext& context, const SubStep& sub_step);
 
 /// Stage hash: brings changed cells back to their tiles. Returns what became of each active tile, for commitTick.
 std::vector<TileOutcome> runHash(const NativeContext& context);

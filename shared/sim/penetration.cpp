@@ -18,8 +18,10 @@ int compactRow(const NativeContext& context, DomainWork& domain, int row) {
     if (overlap[x] <= 0) continue;
     std::int32_t& height = context.area.height[from + x];
     std::int32_t& compacted = context.area.compacted[from + x];
+    const std::vector<std::int32_t>& material = context.area.material;
+    const MaterialRules& own = parameters.materials[material.empty() ? 0 : std::size_t(material[from + x])];
     const std::int32_t share = rules::compactedShare(overlap[x], height - context.area.bedrock[from + x], compacted,
-                                                     parameters.compression_q16, parameters.compaction_limit_q16);
+                                                     own.compression_q16, own.compaction_limit_q16);
     compacted += share;
     height -= share;
     overlap[x] -= share;
@@ -72,7 +74,7 @@ void runPenetration(const NativeContext& context, DomainWork& domain) {
         domain.overlap.data() + std::size_t(row) * domain.width());
   });
   domain.penetrating_count = domain.penetratingLeft();
-  if (context.parameters.compression_q16 == 0) return;
+  if (!anyCompression(context.parameters)) return;
   domain.forEachRow(context.pool, [&](int row) {
     if (domain.penetrating_in_row[row] > 0) domain.penetrating_in_row[row] = compactRow(context, domain, row);
   });

@@ -19,6 +19,10 @@ struct PlacedBody {
   rules::Placement placement;
   CellBox box;  // every cell that the mesh can cover, clipped to the world
   std::vector<rules::RasterPoint> points;
+  // For drift: force times the side of a cell, newtons * 0.1 mm, and the horizontal direction, Q30, in which the body
+  // came here from where it was a sub-step earlier; 0 where it did not move.
+  std::int64_t force_cell = 0;
+  std::int32_t direction_x_q30 = 0, direction_y_q30 = 0;
 };
 
 /// A rectangle in which displaced soil finds its targets: joined boxes of bodies, grown by one cell and by what spread
@@ -40,6 +44,7 @@ struct TickPlan {
   std::int32_t tick = 0;
   Parameters parameters;
   std::vector<TileCoordinate> active;   // in (y, x) order
+  std::vector<TileCoordinate> in_snow;  // that are awake and take snow in this tick (tilesInSnow), in (y, x) order
   std::size_t first_new_crater = 0;     // those of the state's set from here on come with this tick
   SubStep stood;                        // moving bodies where they were before the tick, a domain for each, which may
                                         // overlap; cells that they covered take no soil in the first sub-step

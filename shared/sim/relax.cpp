@@ -135,12 +135,7 @@ class Relaxation {
         const int pairs = kSize / 2 - (parity == 1 && !reaches_next ? 1 : 0);
         const std::size_t at = cells + std::size_t(tile * kSize + parity);
         const bool beneath = covered(segment) || (reaches_next && covered(segment + 1));
-        const int threshold = rules::exchangeThreshold(context_.parameters.slope_threshold_q);
-        const bool moved =
-            beneath
-                ? context_.kernels.exchangeWithinBeneath(&area_.height[at], &area_.bedrock[at], &area_.underside[at],
-                                                         pairs, threshold, context_.parameters.obstacle_threshold_q)
-                : context_.kernels.exchangeWithin(&area_.height[at], &area_.bedrock[at], pairs, threshold);
+        const bool moved = context_.kernels.exchangeWithin(cellsAt(at, beneath, false), pairs, numbersFor(false));
         visited += pairs;
         if (!moved) continue;
         row_change_[row] = area_.last_change[segment] = step;
@@ -189,20 +184,27 @@ class Relaxation {
     if (skip_settled_ && settled(segment_a, step) && settled(first_b, step) && settled(last_b, step)) return 0;
     const std::size_t a = run_a.rowOffset(row_a % kSize) + std::size_t(x - run_a.x0());
     const std::size_t b = run_b.rowOffset(row_b % kSize) + std::size_t(x + shift - run_b.x0());
-    const int threshold = rules::exchangeThreshold(shift == 0 ? context_.parameters.slope_threshold_q
-                                                              : context_.parameters.diagonal_threshold_q);
     const bool beneath = covered(segment_a) || covered(first_b) || covered(last_b);
-    const bool moved =
-        beneath ? context_.kernels.exchangeRowsBeneath(&area_.height[a], &area_.height[b], &area_.bedrock[a],
-                                                       &area_.bedrock[b], &area_.underside[a], &area_.underside[b],
-                                                       count, threshold, context_.parameters.obstacle_threshold_q)
-                : context_.kernels.exchangeRows(&area_.height[a], &area_.height[b], &area_.bedrock[a],
-                                                &area_.bedrock[b], count, threshold);
+    const bool diagonal = shift != 0;
+    const bool moved = context_.kernels.exchangeRows(cellsAt(a, beneath, diagonal), cellsAt(b, beneath, diagonal),
+                                                     count, numbersFor(diagonal));
     if (moved) {
       area_.last_change[segment_a] = area_.last_change[first_b] = area_.last_change[last_b] = step;
       row_change_[row_a] = row_change_[row_b] = step;
     }
     return count;
+  }
+
+  ExchangeCells cellsAt(std::size_t offset, bool beneath, bool diagonal) const {
+    const std::vector<std::int32_t>& threshold = diagonal ? area_.diagonal_threshold : area_.threshold;
+    return {&area_.height[offset], &area_.bedrock[offset], beneath ? &area_.underside[offset] : nullptr,
+            threshold.empty() ? nullptr : &threshold[offset]};
+  }
+
+  ExchangeNumbers numbersFor(bool diagonal) const {
+    const MaterialRules& soil = context_.parameters.materials.front();
+    return {rules::exchangeThreshold(diagonal ? soil.diagonal_threshold_q : soil.slope_threshold_q),
+            context_.parameters.obstacle_threshold_q};
   }
 
   const NativeContext& context_;
@@ -218,8 +220,9 @@ class Relaxation {
 
 std::int64_t runRelax(const NativeContext& context, int first_sweep, int sweep_count, bool skip_settled) {
   if (context.parameters.slopes != SlopeRule::exchange) {
-    runSlopes(context, sweep_count);
-    return std::int64_t(context.area.tiles.size()) * rules::kTileCells * 4 * sweep_count;
+    runSlopes(context, first_sweep, sweep_count);
+    const int edges = context.parameters.slopes == SlopeRule::drift ? 2 : 4;
+    return std::int64_t(context.area.tiles.size()) * rules::kTileCells * edges * sweep_count;
   }
   Relaxation relaxation(context, skip_settled);
   std::int64_t visited = 0;

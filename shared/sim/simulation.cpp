@@ -1,5 +1,7 @@
 #include "shared/sim/simulation.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "shared/base/assert.h"
@@ -27,30 +29,46 @@ Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_pt
 }
 
 Result<TickResult> Simulation::step(std::span<const Pose> poses, const std::optional<Parameters>& parameters,
-                                    std::span<const Crater> craters) {
-  if (Status status = begin(poses, parameters, craters); !status) return Error{status.error()};
+                                    std::span<const Crater> craters, std::span<const Snowfall> snowfalls) {
+  if (Status status = begin(poses, parameters, craters, snowfalls); !status) return Error{status.error()};
   return finish();
 }
 
 Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters,
-                         std::span<const Crater> craters) {
+                         std::span<const Crater> craters, std::span<const Snowfall> snowfalls) {
   SPOOR_ASSERT(inFlight() < kTicksInFlight);
-  if (Status status = validatePoses(base_->pack(), poses); !status) return status;
+  const ScenePack& pack = base_->pack();
+  if (Status status = validatePoses(pack, poses); !status) return status;
   if (parameters)
-    if (Status status = validateParameters(base_->pack(), *parameters); !status) return status;
-  if (Status status = validateNewCraters(base_->pack(), craters, state_.craters.size(), state_.craters.hashCells());
-      !status)
+    if (Status status = validateParameters(pack, *parameters); !status) return status;
+  if (Status status = validateNewCraters(pack, craters, state_.craters.size(), state_.craters.hashCells()); !status)
     return status;
   if (Status status = settle(); !status) return status;
+  const std::int32_t tick = state_.tick + 1;
+  if (Status status = validateNewSnowfalls(pack, snowfalls, tick, state_.snowfalls.size()); !status) return status;
   TickResult result;
-  result.update.craters = numbered(craters, state_.tick + 1, state_.craters.size());
+  result.update.tick = tick;
+  result.update.craters = numbered(craters, tick, state_.craters.size());
+  result.update.snowfalls.assign(snowfalls.begin(), snowfalls.end());
+  state_.snowfalls.insert(state_.snowfalls.end(), snowfalls.begin(), snowfalls.end());
+  std::vector<TileCoordinate> in_snow;
+  {
+    StageTimer timer(result.effect.stage_ms, Stage::craters);
+    for (const Tile* tile : tilesInSnow(state_, tick, SnowTiles::awake)) in_snow.push_back(tile->at);
+    snow_.emplace(state_, pack, tick, SnowTiles::asleep);
+  }
   Result<TickPlan> plan = [&] {
     StageTimer timer(result.effect.stage_ms, Stage::active);
-    return planTick(base_->pack(), reach_q_, state_, poses, parameters.value_or(state_.parameters),
-                    result.update.craters);
+    return planTick(pack, reach_q_, state_, poses, parameters.value_or(state_.parameters), result.update.craters);
   }();
-  if (!plan) return Error{plan.error()};
-  result.update.tick = plan->tick;
+  if (!plan) {
+    takeBack(result);
+    return Error{plan.error()};
+  }
+  backend_->tilesChanged(snow_->tiles());
+  waiting_snow_.clear();
+  std::ranges::set_difference(in_snow, plan->active, std::back_inserter(waiting_snow_));
+  plan->in_snow = std::move(in_snow);
   result.update.poses.assign(poses.begin(), poses.end());
   result.update.parameters = parameters;
   result.waiting_tiles = plan->waiting.size();
@@ -61,10 +79,18 @@ Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parame
   }
   if (Status status = backend_->submit(std::move(*plan), *base_, state_); !status) {
     state_.craters.truncate(state_.craters.size() - craters.size());
+    takeBack(result);
     return failure_.emplace(Error{status.error()});
   }
   submitted_ = std::move(result);
   return {};
+}
+
+/// Undoes what the state knows of a tick that does not come about, but for its craters.
+void Simulation::takeBack(const TickResult& tick) {
+  snow_->takeBack(state_);
+  snow_.reset();
+  state_.snowfalls.resize(state_.snowfalls.size() - tick.update.snowfalls.size());
 }
 
 /// Takes the state to the submitted tick, if there is one.
@@ -74,11 +100,18 @@ Status Simulation::settle() {
   auto effect = backend_->settle(state_);
   if (!effect) {
     state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+    takeBack(*submitted_);
     return failure_.emplace(Error{effect.error()});
   }
   TickResult result = *std::exchange(submitted_, std::nullopt);
   for (int stage = 0; stage < kStageCount; ++stage) effect->stage_ms[stage] += result.effect.stage_ms[stage];
   result.effect = std::move(*effect);
+  std::vector<Tile*> waiting;
+  for (const TileCoordinate at : waiting_snow_) {
+    waiting.push_back(state_.tiles.find(at));
+    snowOnTile(*waiting.back(), base_->pack(), result.update.tick, state_);
+  }
+  backend_->tilesChanged(waiting);
   state_.tick = result.update.tick;
   if (result.update.parameters) state_.parameters = *result.update.parameters;
   state_.previous_poses = std::exchange(state_.poses, result.update.poses);

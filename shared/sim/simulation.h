@@ -6,6 +6,7 @@
 #include <span>
 
 #include "shared/sim/backend.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 
@@ -28,18 +29,20 @@ class Simulation {
 
   /// Runs one tick that takes the bodies to `poses`: begin() and finish().
   Result<TickResult> step(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {},
-                          std::span<const Crater> craters = {});
+                          std::span<const Crater> craters = {}, std::span<const Snowfall> snowfalls = {});
 
   /// The first half: plans the tick and hands it to the backend. Where that computes on a device, this may return long
   /// before the device is done: time to finish the tick before. Two ticks may be begun and not finished (asserted).
   /// @param parameters  from this tick on, where they change. They wake nothing: soil at rest stays until it is
   /// reached.
   /// @param craters  that come with this tick; their tick and id are set here. Live tiles take them at once.
-  /// Errors, which leave the state untouched: poses, parameters or craters that validatePoses, validateParameters and
-  /// validateCrater refuse, more craters than a tick or a session may have, a tick that planTick finds too large.
-  /// Errors after which the session cannot go on: a device that is lost or has not the memory.
+  /// @param snowfalls  that come with this tick, and begin with it or later
+  /// Errors, which leave the state untouched: poses, parameters, craters or snowfalls that validatePoses,
+  /// validateParameters, validateCrater and validateNewSnowfalls refuse, more craters than a tick or a session may
+  /// have, a tick that planTick finds too large. Errors after which the session cannot go on: a device that is lost or
+  /// has not the memory.
   [[nodiscard]] Status begin(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {},
-                             std::span<const Crater> craters = {});
+                             std::span<const Crater> craters = {}, std::span<const Snowfall> snowfalls = {});
 
   /// The second half, of the oldest tick begun (asserted): waits for it, and encodes what it changed.
   /// Errors: the device is lost; the session cannot go on, and every later call says so again.
@@ -56,14 +59,18 @@ class Simulation {
 
  private:
   Status settle();
+  void takeBack(const TickResult& tick);
 
   const BaseTerrain* base_;
   std::vector<std::int32_t> reach_q_;  // bodyReaches
   std::unique_ptr<Backend> backend_;
   WorldState state_;
-  std::optional<TickResult> submitted_;  // with the backend; without its effect, and the state knows nothing of it
-  std::optional<Error> failure_;         // of the backend; nothing goes on after it
-  std::deque<TickResult> in_flight_;     // settled, their cells not collected
+  std::optional<TickResult> submitted_;  // with the backend; without its effect, and the state knows nothing of it but
+                                         // its craters, snowfalls and the snow on tiles that are asleep
+  std::optional<SnowOfTick> snow_;       // of the submitted tick, on those
+  std::vector<TileCoordinate> waiting_snow_;  // tiles that are awake, wait in that tick, and take its snow after it
+  std::optional<Error> failure_;              // of the backend; nothing goes on after it
+  std::deque<TickResult> in_flight_;          // settled, their cells not collected
 };
 
 }  // namespace spoor

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 
+#include "shared/sim/drift.h"
 #include "shared/sim/native_stages.h"
 
 namespace spoor {
@@ -42,18 +43,37 @@ struct Piece {
   std::size_t offset;  // in the area's planes
 };
 
+/// What a sweep needs besides the cells.
+struct SlopeSweep {
+  std::array<SlopeNumbers, kMaterialsLimit> numbers;
+  rules::DriftStep drift;
+  rules::uint phase = 0;
+};
+
+SlopeSweep sweepOf(const NativeContext& context) {
+  SlopeSweep sweep;
+  const Parameters& parameters = context.parameters;
+  const DriftSweep drift = driftSweep(context.pack, parameters);
+  for (std::size_t i = 0; i < parameters.materials.size(); ++i) {
+    const MaterialRules& own = parameters.materials[i];
+    if (parameters.slopes == SlopeRule::drift)
+      sweep.numbers[i] = {drift.materials[i].rest, 0, drift.materials[i].rate,
+                          std::int32_t(drift.materials[i].inverse)};
+    else
+      sweep.numbers[i] = {own.slope_threshold_q, own.diagonal_threshold_q, own.roughness_q16, 0};
+  }
+  sweep.drift = drift.step;
+  return sweep;
+}
+
 /// What a task works in.
 class BlockSweep {
  public:
-  BlockSweep(const NativeContext& context, const Block& block)
-      : context_(context),
-        area_(context.area),
-        block_(block),
-        numbers_{context.parameters.slope_threshold_q, context.parameters.diagonal_threshold_q,
-                 context.parameters.roughness_q16} {
+  BlockSweep(const NativeContext& context, const SlopeSweep& sweep, const Block& block)
+      : context_(context), area_(context.area), sweep_(sweep), block_(block) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      std::int32_t* first = cells_[i].data() + kHalo;
-      rows_[i] = {first, first + kRowCells, first + 2 * kRowCells, first + 3 * kRowCells};
+      const auto plane = [&](int number) { return cells_[i].data() + kHalo + number * kRowCells; };
+      rows_[i] = {plane(0), plane(1), plane(2), plane(3), plane(4), plane(5), plane(6), plane(7), plane(8)};
     }
     for (std::size_t i = 0; i < changes_.size(); ++i) changes_[i].fill(0);
   }
@@ -63,7 +83,18 @@ class BlockSweep {
     load(block_.row - 1);
     for (int row = block_.row - 1; row < block_.row + kBlockRows; ++row) {
       load(row + 1);
-      context_.kernels.fluxFlows(at(row), at(row + 1), block_.width, numbers_, carry.data(), output(row, aside.data()));
+      context_.kernels.fluxFlows(at(row), at(row + 1), block_.width, carry.data(), output(row, aside.data()));
+    }
+  }
+
+  void drift() {
+    std::array<std::int32_t, kBlockColumns> carry{}, aside;
+    const int y = area_.bands[block_.band].tile_y * kSize;
+    load(block_.row - 1);
+    for (int row = block_.row - 1; row < block_.row + kBlockRows; ++row) {
+      load(row + 1);
+      context_.kernels.driftFlows(at(row), at(row + 1), block_.width, sweep_.drift, block_.x0, y + row, sweep_.phase,
+                                  carry.data(), output(row, aside.data()));
     }
   }
 
@@ -74,8 +105,7 @@ class BlockSweep {
     for (int row = block_.row - 1; row < block_.row + kBlockRows; ++row) {
       load(row + 2);
       findAmounts(row + 1, 1);
-      context_.kernels.averageFlows(at(row), at(row + 1), block_.width, numbers_, carry.data(),
-                                    output(row, aside.data()));
+      context_.kernels.averageFlows(at(row), at(row + 1), block_.width, carry.data(), output(row, aside.data()));
     }
   }
 
@@ -95,7 +125,7 @@ class BlockSweep {
       load(row + 1);
       if (findAmounts(row, 0)) {
         std::int32_t* const change[3] = {changeOf(row - 1), changeOf(row), changeOf(row + 1)};
-        context_.kernels.scatterFlows(at(row - 1), at(row), at(row + 1), block_.width, numbers_, change);
+        context_.kernels.scatterFlows(at(row - 1), at(row), at(row + 1), block_.width, change);
       }
       addChange(row - 1);
     }
@@ -144,14 +174,21 @@ class BlockSweep {
     if (known < block_.width + 2 * kHalo) cells_[std::size_t(row & 3)].fill(0);
     forEachPiece(row, kHalo, [&](const Piece& piece) {
       const int i = piece.x - block_.x0;
-      context_.kernels.slopeCells(area_.height.data() + piece.offset, area_.bedrock.data() + piece.offset,
-                                  area_.underside.data() + piece.offset, piece.count,
-                                  context_.parameters.obstacle_threshold_q, to.height + i, to.room + i, to.soil + i);
+      const SlopeRow there = {to.height + i,    to.room + i,      to.soil + i,
+                              to.amount + i,    to.threshold + i, to.diagonal_threshold + i,
+                              to.roughness + i, to.push_x + i,    to.push_y + i};
+      context_.kernels.slopeCells({area_.height.data() + piece.offset, area_.bedrock.data() + piece.offset,
+                                   area_.underside.data() + piece.offset, nullptr},
+                                  area_.material.empty() ? nullptr : area_.material.data() + piece.offset, piece.count,
+                                  sweep_.numbers.data(), context_.parameters.obstacle_threshold_q, there);
+      if (area_.push_x.empty()) return;
+      std::copy_n(area_.push_x.data() + piece.offset, piece.count, there.push_x);
+      std::copy_n(area_.push_y.data() + piece.offset, piece.count, there.push_y);
     });
   }
 
   bool findAmounts(int row, int halo) {
-    return context_.kernels.slopeAmounts(at(row - 1), at(row), at(row + 1), -halo, block_.width + halo, numbers_);
+    return context_.kernels.slopeAmounts(at(row - 1), at(row), at(row + 1), -halo, block_.width + halo);
   }
 
   /// Adds what scattering did to a row, now that the block does no more to it. Where other blocks add too: atomically.
@@ -175,23 +212,25 @@ class BlockSweep {
 
   const NativeContext& context_;
   WorkArea& area_;
+  const SlopeSweep& sweep_;
   const Block& block_;
-  const SlopeNumbers numbers_;
-  std::array<std::array<std::int32_t, 4 * kRowCells>, 4> cells_;  // of the last four rows, as SlopeRow has them
-  std::array<std::array<std::int32_t, kRowCells>, 4> changes_;    // scatter: of the last rows
+  std::array<std::array<std::int32_t, SlopeRow::kPlanes * kRowCells>, 4> cells_{};  // of the last four rows
+  std::array<std::array<std::int32_t, kRowCells>, 4> changes_;                      // scatter: of the last rows
   std::array<SlopeRow, 4> rows_;
 };
 
 }  // namespace
 
-void runSlopes(const NativeContext& context, int sweep_count) {
+void runSlopes(const NativeContext& context, int first_sweep, int sweep_count) {
   WorkArea& area = context.area;
   area.next_height.resize(area.height.size());
   const std::vector<Block> blocks = blocksOf(area);
+  SlopeSweep numbers = sweepOf(context);
   const auto forEachBlock = [&](auto body) {
-    context.pool.forEach(int(blocks.size()), [&](int i, int) { body(BlockSweep(context, blocks[i])); });
+    context.pool.forEach(int(blocks.size()), [&](int i, int) { body(BlockSweep(context, numbers, blocks[i])); });
   };
   for (int sweep = 0; sweep < sweep_count; ++sweep) {
+    numbers.phase = rules::driftPhase(context.tick, first_sweep + sweep);
     switch (context.parameters.slopes) {
       case SlopeRule::exchange:
         break;
@@ -204,6 +243,9 @@ void runSlopes(const NativeContext& context, int sweep_count) {
       case SlopeRule::scatter:
         forEachBlock([](BlockSweep&& block) { block.copy(); });
         forEachBlock([](BlockSweep&& block) { block.scatter(); });
+        break;
+      case SlopeRule::drift:
+        forEachBlock([](BlockSweep&& block) { block.drift(); });
         break;
     }
     std::swap(area.height, area.next_height);

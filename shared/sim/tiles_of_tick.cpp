@@ -39,6 +39,7 @@ ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const World
   std::vector<std::size_t> missing;
   const auto met = state.tiles.meeting(base.pack(), state.craters.records().subspan(plan.first_new_crater));
   for (const TileCoordinate at : plan.active) {
+    active.snowed.push_back(std::ranges::binary_search(plan.in_snow, at) ? 1 : 0);
     active.tiles.push_back(const_cast<Tile*>(state.tiles.find(at)));
     active.cratered.emplace_back();
     if (active.tiles.back() == nullptr)
@@ -46,7 +47,8 @@ ActiveTiles takeTiles(const TickPlan& plan, const BaseTerrain& base, const World
     else if (std::ranges::binary_search(met, at, {}, &Tile::at))
       active.cratered.back() = cratersWithin(at, base.pack(), state.craters, plan.first_new_crater);
   }
-  const DormantGround dormant{&base, &state.craters};
+  DormantGround dormant = dormantGround(state, base);
+  dormant.tick = plan.tick;
   active.fresh.resize(missing.size());
   pool.forEach(int(missing.size()), [&](int i, int) {
     active.fresh[i] = makeTile(plan.active[missing[i]], dormant, plan.tick);
@@ -66,7 +68,7 @@ void commitCraters(Tile& tile, std::int64_t gained, std::uint64_t hash, WorldSta
 
 std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std::vector<TileOutcome> outcomes,
                                    WorldState& state) {
-  const int reach = std::clamp(plan.parameters.sweeps_per_tick, 1, kSize);
+  const int reach = std::clamp(sweepsOf(plan.parameters), 1, kSize);
   std::vector<TileChange> changes;
   auto next_fresh = active.fresh.begin();
   for (std::size_t i = 0; i < active.tiles.size(); ++i) {
@@ -79,7 +81,8 @@ std::vector<TileChange> commitTick(const TickPlan& plan, ActiveTiles active, std
     if (!changed && !is_new && tile.wake_mask == 0 && cratered.empty()) continue;
     if (is_new) {
       state.ledger.initial += tile.initial;
-      state.ledger.craters += tile.ground - tile.initial;
+      state.ledger.craters += tile.first_craters;
+      state.ledger.events += tile.first_snow;
     }
     const std::uint64_t hash_before = is_new ? 0 : tileStateHash(tile);
     const std::int64_t ground_before = is_new ? 0 : tile.ground;

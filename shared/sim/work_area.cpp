@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "shaders/rules/exchange.h"
 #include "shared/base/assert.h"
 
 namespace spoor {
@@ -24,7 +25,7 @@ void closeBorder(const ScenePack& pack, WorkArea& area, const Run& run) {
 
 }  // namespace
 
-void WorkArea::gather(const std::vector<Tile*>& active, bool compacts, ThreadPool& pool) {
+void WorkArea::gather(const std::vector<Tile*>& active, const Parameters& parameters, ThreadPool& pool) {
   tiles = active;
   const int count = int(tiles.size());
   runs.clear();
@@ -49,7 +50,12 @@ void WorkArea::gather(const std::vector<Tile*>& active, bool compacts, ThreadPoo
   bedrock.resize(cells);
   underside.resize(cells);
   underside_before.resize(cells);
+  const bool compacts = anyCompression(parameters), mixed = parameters.materials.size() > 1;
+  const bool exchanges = mixed && parameters.slopes == SlopeRule::exchange;
   compacted.assign(compacts ? cells : 0, 0);
+  material.assign(mixed ? cells : 0, 0);
+  threshold.resize(exchanges ? cells : 0);
+  diagonal_threshold.resize(exchanges ? cells : 0);
   lowest_underside.resize(segments);
   last_change.assign(segments, 0);
   pool.forEach(count, [&](int i, int) {
@@ -60,6 +66,14 @@ void WorkArea::gather(const std::vector<Tile*>& active, bool compacts, ThreadPoo
       std::memcpy(bedrock.data() + to, tiles[i]->bedrock->data() + row * kSize, kSize * sizeof(std::int32_t));
       if (compacts && tiles[i]->compacted() != nullptr)
         std::memcpy(compacted.data() + to, tiles[i]->compacted()->data() + row * kSize, kSize * sizeof(std::int32_t));
+      if (mixed && tiles[i]->material() != nullptr)
+        std::memcpy(material.data() + to, tiles[i]->material()->data() + row * kSize, kSize * sizeof(std::int32_t));
+      if (!exchanges) continue;
+      for (std::size_t cell = to; cell < to + kSize; ++cell) {
+        const MaterialRules& own = parameters.materials[std::size_t(material[cell])];
+        threshold[cell] = rules::exchangeThreshold(own.slope_threshold_q);
+        diagonal_threshold[cell] = rules::exchangeThreshold(own.diagonal_threshold_q);
+      }
     }
   });
 }
@@ -83,6 +97,8 @@ std::vector<BufferBytes> WorkArea::buffers() const {
           {"bedrock", bytes(bedrock)},
           {"undersides (2)", bytes(underside, underside_before)},
           {"compacted soil", bytes(compacted)},
+          {"materials and their thresholds", bytes(material, threshold, diagonal_threshold)},
+          {"pushes", bytes(push_x, push_y)},
           {"lowest underside and last change of rows", bytes(lowest_underside, last_change)}};
 }
 

@@ -41,12 +41,16 @@ struct WorkArea {
   std::vector<std::int32_t> height, bedrock, underside;  // [cells]
   std::vector<std::int32_t> underside_before;            // [cells] a sub-step earlier
   std::vector<std::int32_t> compacted;                   // [cells] where the tick compacts, else empty
-  std::vector<std::int32_t> next_height;                 // [cells] of the sweep to come; none with pair exchange
-  std::vector<std::int32_t> lowest_underside;            // [segments] smallest underside over the segment's cells
-  std::vector<std::int32_t> last_change;                 // [segments] step of the relaxation at which it last changed
+  std::vector<std::int32_t> material;                    // [cells] where there are several, else empty
+  std::vector<std::int32_t> threshold;                   // [cells] exchangeThreshold of side neighbours, by material,
+  std::vector<std::int32_t> diagonal_threshold;          //   and of diagonal ones; empty where all are of one
+  std::vector<std::int32_t> push_x, push_y;    // [cells] pushedSoil (rules/drift.h); empty where nothing pushes
+  std::vector<std::int32_t> next_height;       // [cells] of the sweep to come; none with pair exchange
+  std::vector<std::int32_t> lowest_underside;  // [segments] smallest underside over the segment's cells
+  std::vector<std::int32_t> last_change;       // [segments] step of the relaxation at which it last changed
 
-  /// Lays out the cells of active tiles, which come in (y, x) order; those of `compacted` only where asked for.
-  void gather(const std::vector<Tile*>& active, bool compacts, ThreadPool& pool);
+  /// Lays out the cells of active tiles, which come in (y, x) order.
+  void gather(const std::vector<Tile*>& active, const Parameters& parameters, ThreadPool& pool);
 
   /// The run that holds a cell. It must be active (asserted).
   const Run& runAt(std::int32_t x, std::int32_t y) const;

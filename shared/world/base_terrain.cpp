@@ -47,6 +47,36 @@ std::int32_t sampleHeight(const SampleBase& samples, const Cubic& along_x, const
   return std::int32_t(std::clamp<std::int64_t>(height, -limit, limit));
 }
 
+std::int32_t sampleMaterial(const MaterialImage& image, std::int32_t x, std::int32_t y) {
+  const auto sampleAt = [](std::int32_t cell, std::int64_t step_q32, std::int32_t count) {
+    return std::min<std::int64_t>((cell * step_q32 + step_q32 / 2) >> 32, count - 1);
+  };
+  return image.material[std::size_t(sampleAt(y, image.step_y_q32, image.row_count) * image.column_count +
+                                    sampleAt(x, image.step_x_q32, image.column_count))];
+}
+
+/// The slope is that of the base by central differences, one-sided at the world's border.
+std::int32_t materialByRules(const BaseTerrain& base, const std::vector<MaterialRule>& rules, std::int32_t x,
+                             std::int32_t y) {
+  const auto difference = [&](std::int32_t dx, std::int32_t dy) {
+    const std::int32_t x0 = std::max(x - dx, 0), x1 = std::min(x + dx, base.pack().width_cells - 1);
+    const std::int32_t y0 = std::max(y - dy, 0), y1 = std::min(y + dy, base.pack().height_cells - 1);
+    const std::int32_t cells = x1 - x0 + y1 - y0;
+    // Twice the difference from one cell to the next.
+    return cells == 0 ? 0 : (std::int64_t(base.height(x1, y1)) - base.height(x0, y0)) * 2 / cells;
+  };
+  const std::int64_t along_x = difference(1, 0), along_y = difference(0, 1);
+  const auto square = std::uint64_t(along_x * along_x) + std::uint64_t(along_y * along_y);
+  const std::int64_t height = base.height(x, y);
+  for (const MaterialRule& rule : rules) {
+    const std::uint64_t gentlest = 2 * std::uint64_t(rule.gentlest_q), steepest = 2 * std::uint64_t(rule.steepest_q);
+    if (height >= rule.lowest_q && height <= rule.highest_q && square >= gentlest * gentlest &&
+        square <= steepest * steepest)
+      return rule.material;
+  }
+  return 0;
+}
+
 }  // namespace
 
 void BaseTerrain::fillHeights(TileCoordinate tile, std::span<std::int32_t, rules::kTileCells> height) const {
@@ -83,6 +113,28 @@ std::int32_t BaseTerrain::height(std::int32_t x, std::int32_t y) const {
   std::int32_t result;
   fillArea(x, y, 1, 1, 1, {&result, 1});
   return result;
+}
+
+void BaseTerrain::fillMaterials(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns,
+                                std::int32_t rows, std::span<std::int32_t> material) const {
+  SPOOR_ASSERT(material.size() == std::size_t(columns) * std::size_t(rows));
+  const MaterialMap& map = pack_->material_map;
+  std::ranges::fill(material, 0);
+  if (map.kind == MaterialMapKind::one || (map.kind == MaterialMapKind::rules && map.rules.empty())) return;
+  const auto find = [&](std::int32_t cell_x, std::int32_t cell_y) {
+    return map.kind == MaterialMapKind::image ? sampleMaterial(map.image, cell_x, cell_y)
+                                              : materialByRules(*this, map.rules, cell_x, cell_y);
+  };
+  for (std::int32_t row = 0; row < rows; ++row) {
+    const std::int64_t cell_y = y + std::int64_t(row) * stride;
+    if (cell_y < 0 || cell_y >= pack_->height_cells) continue;
+    for (std::int32_t column = 0; column < columns; ++column) {
+      const std::int64_t cell_x = x + std::int64_t(column) * stride;
+      if (cell_x < 0 || cell_x >= pack_->width_cells) continue;
+      material[std::size_t(row) * std::size_t(columns) + std::size_t(column)] =
+          find(std::int32_t(cell_x), std::int32_t(cell_y));
+    }
+  }
 }
 
 std::int32_t BaseTerrain::heightAt(std::int32_t x_q, std::int32_t y_q) const {

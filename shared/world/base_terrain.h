@@ -8,17 +8,6 @@
 
 namespace spoor {
 
-/// Coordinates of a tile: cell coordinates / kTileSize. Ordered by row, then column.
-struct TileCoordinate {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-  friend bool operator==(const TileCoordinate&, const TileCoordinate&) = default;
-  friend auto operator<=>(const TileCoordinate& a, const TileCoordinate& b) {
-    if (a.y != b.y) return a.y <=> b.y;
-    return a.x <=> b.x;
-  }
-};
-
 /// The undisturbed ground of a pack, computed on demand, any part of any size of world. Thread-safe (const).
 /// Cells outside the world have height 0.
 class BaseTerrain {
@@ -34,6 +23,10 @@ class BaseTerrain {
                 std::span<std::int32_t> height) const;
 
   std::int32_t height(std::int32_t x, std::int32_t y) const;
+
+  /// Numbers of the materials of the same cells as fillArea's (the description map); 0 outside the world.
+  void fillMaterials(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns, std::int32_t rows,
+                     std::span<std::int32_t> material) const;
 
   /// Height at a point between cell centres (0.1 mm units from the south-west corner): bilinear, rounded down.
   /// Points outside the world take the nearest cell's.

@@ -1,8 +1,20 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 namespace spoor {
+
+/// Coordinates of a tile: cell coordinates / kTileSize. Ordered by row, then column.
+struct TileCoordinate {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  friend bool operator==(const TileCoordinate&, const TileCoordinate&) = default;
+  friend auto operator<=>(const TileCoordinate& a, const TileCoordinate& b) {
+    if (a.y != b.y) return a.y <=> b.y;
+    return a.x <=> b.x;
+  }
+};
 
 /// Cells [x0, x1) x [y0, y1).
 struct CellBox {

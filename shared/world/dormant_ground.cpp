@@ -7,12 +7,18 @@ namespace spoor {
 void DormantGround::fillArea(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns,
                              std::int32_t rows, std::span<std::int32_t> height) const {
   base->fillArea(x, y, stride, columns, rows, height);
-  if (craters == nullptr || craters->size() == 0) return;
-  std::vector<std::int32_t> displacement(height.size());
-  craters->fill(x, y, stride, columns, rows, displacement);
-  const std::int32_t soil = base->pack().soil_depth_q;
-  for (std::size_t i = 0; i < height.size(); ++i)
-    if (displacement[i] != 0) height[i] = rules::craterGround(height[i], height[i] - soil, displacement[i]);
+  std::vector<std::int32_t> displacement;
+  if (craters != nullptr && craters->size() > 0) {
+    displacement.resize(height.size());
+    craters->fill(x, y, stride, columns, rows, displacement);
+    const std::int32_t soil = base->pack().soil_depth_q;
+    for (std::size_t i = 0; i < height.size(); ++i)
+      if (displacement[i] != 0) height[i] = rules::craterGround(height[i], height[i] - soil, displacement[i]);
+  }
+  if (snowfalls.empty()) return;
+  displacement.resize(height.size());
+  fillSnow(base->pack(), snowfalls, tick, x, y, stride, columns, rows, displacement);
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = rules::snowGround(height[i], displacement[i]);
 }
 
 void DormantGround::fillHeights(TileCoordinate tile, std::span<std::int32_t, rules::kTileCells> height) const {

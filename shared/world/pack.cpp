@@ -12,7 +12,7 @@ namespace spoor {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x50525053;  // "SPRP"
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::size_t kListLimit = 4096;         // meshes, paths, bodies
 constexpr std::size_t kWaypointLimit = 1 << 16;  // of a path
 constexpr std::size_t kWorkLimit = 1 << 24;  // vertices, triangles and edges, over all bodies: a tick visits them all
@@ -102,6 +102,11 @@ Status validateBody(const ScenePack& pack, const Body& body) {
   SPOOR_CHECK_RANGE(body.lift_q, 0, kStrideLimit);
   SPOOR_CHECK_RANGE(body.phase_q, 0, kMeshReach);
   SPOOR_CHECK_RANGE(body.follows_slope, 0, 1);
+  SPOOR_CHECK_RANGE(body.force_n, 0, kForceLimit);
+  SPOOR_CHECK_RANGE(body.first_scale_q16, 1, kFullScale);
+  SPOOR_CHECK_RANGE(body.last_scale_q16, 1, kFullScale);
+  SPOOR_CHECK_RANGE(body.first_scale_tick, 0, 1 << 30);
+  SPOOR_CHECK_RANGE(body.last_scale_tick, body.first_scale_tick, 1 << 30);
   return {};
 }
 
@@ -186,6 +191,11 @@ void visitScalars(BodyType& body, Visit visit) requires std::same_as<std::remove
   visit(body.lift_q);
   visit(body.phase_q);
   visit(body.follows_slope);
+  visit(body.force_n);
+  visit(body.first_scale_q16);
+  visit(body.last_scale_q16);
+  visit(body.first_scale_tick);
+  visit(body.last_scale_tick);
 }
 
 /// A vector of fixed arrays, read as one block.
@@ -210,6 +220,54 @@ void putArrays(ByteWriter& writer, const std::vector<std::array<T, N>>& items) {
     for (const T value : item) writer.put(value);
 }
 
+void putMaterials(ByteWriter& writer, const ScenePack& pack) {
+  writer.put(std::uint32_t(pack.materials.size()));
+  for (const Material& material : pack.materials) {
+    writer.putText(material.name);
+    for (const std::uint8_t channel : material.colour) writer.put(channel);
+    writer.put(std::uint8_t(material.texture));
+    writer.put(material.grain_size_q);
+    writer.put(material.grain_height_q);
+  }
+  const MaterialMap& map = pack.material_map;
+  writer.put(std::uint8_t(map.kind));
+  writer.put(map.image.column_count);
+  writer.put(map.image.row_count);
+  writer.put(map.image.step_x_q32);
+  writer.put(map.image.step_y_q32);
+  writer.put(std::uint32_t(map.image.material.size()));
+  writer.putBytes(map.image.material);
+  writer.put(std::uint32_t(map.rules.size()));
+  for (const MaterialRule& rule : map.rules)
+    for (const std::int32_t value : {rule.material, rule.lowest_q, rule.highest_q, rule.gentlest_q, rule.steepest_q})
+      writer.put(value);
+}
+
+void getMaterials(ByteReader& reader, ScenePack& pack) {
+  pack.materials.clear();
+  for (auto count = reader.get<std::uint32_t>(); count > 0 && !reader.failed(); --count) {
+    Material& material = pack.materials.emplace_back();
+    material.name = reader.getText();
+    for (std::uint8_t& channel : material.colour) channel = reader.get<std::uint8_t>();
+    material.texture = MaterialTexture(reader.get<std::uint8_t>());
+    material.grain_size_q = reader.get<std::int32_t>();
+    material.grain_height_q = reader.get<std::int32_t>();
+  }
+  MaterialMap& map = pack.material_map;
+  map.kind = MaterialMapKind(reader.get<std::uint8_t>());
+  map.image.column_count = reader.get<std::int32_t>();
+  map.image.row_count = reader.get<std::int32_t>();
+  map.image.step_x_q32 = reader.get<std::int64_t>();
+  map.image.step_y_q32 = reader.get<std::int64_t>();
+  const auto samples = reader.getBytes(reader.get<std::uint32_t>());
+  map.image.material.assign(samples.begin(), samples.end());
+  for (auto count = reader.get<std::uint32_t>(); count > 0 && !reader.failed(); --count) {
+    MaterialRule& rule = map.rules.emplace_back();
+    for (std::int32_t* value : {&rule.material, &rule.lowest_q, &rule.highest_q, &rule.gentlest_q, &rule.steepest_q})
+      *value = reader.get<std::int32_t>();
+  }
+}
+
 }  // namespace
 
 std::string toText(const PackId& id) { return hexText(id.high) + hexText(id.low); }
@@ -227,6 +285,8 @@ Status validatePack(const ScenePack& pack) {
   SPOOR_CHECK_RANGE(pack.soil_depth_q, 0, kSoilLimit);
   SPOOR_CHECK_RANGE(pack.patches_per_row, 0, 4096);
   SPOOR_CHECK_RANGE(pack.normal_blur_passes, 0, 16);
+  if (Status status = validateMaterials(pack.materials, pack.material_map); !status)
+    return Error{"pack: " + status.error()};
   if (Status status = validateParameters(pack, pack.parameters); !status) return Error{"pack: " + status.error()};
   if (Status base = validateBase(pack); !base) return base;
   if (pack.meshes.size() > kListLimit || pack.paths.size() > kListLimit || pack.bodies.size() > kListLimit)
@@ -244,11 +304,21 @@ Status validatePack(const ScenePack& pack) {
     work += mesh.vertices.size() + mesh.triangles.size() + mesh.edges.size();
   }
   SPOOR_CHECK_RANGE(std::int64_t(work), 0, kWorkLimit);
+  if (Status status = validateNewSnowfalls(pack, pack.snowfalls, 1, 0); !status)
+    return Error{"pack: " + status.error()};
   return validateTimedCraters(pack);
 }
 
 Status validateParameters(const ScenePack& pack, const Parameters& parameters) {
   if (Status status = validateParameters(parameters); !status) return status;
+  if (parameters.materials.size() != pack.materials.size())
+    return Error{"parameters: of " + std::to_string(parameters.materials.size()) + " materials, the pack has " +
+                 std::to_string(pack.materials.size())};
+  const std::int32_t quarter = quarterArc(pack.cell_q);
+  for (const MaterialRules& rules : parameters.materials)
+    if (rules.repose_arc_q >= quarter)
+      return Error{"parameters: repose_arc_q is " + std::to_string(rules.repose_arc_q) +
+                   ", not less than a right angle's, " + std::to_string(quarter)};
   const std::int64_t cells = std::int64_t(pack.width_cells) * pack.height_cells;
   if (parameters.active_areas == 0 && (pack.width_cells > kWholeWorldSideLimit ||
                                        pack.height_cells > kWholeWorldSideLimit || cells > kWholeWorldCellsLimit))
@@ -295,6 +365,9 @@ std::vector<std::uint8_t> encodePack(const ScenePack& pack) {
   visitScalars(pack.crater_limits, [&](auto value) { writer.put(value); });
   writer.put(std::uint32_t(pack.craters.size()));
   for (const Crater& crater : pack.craters) putCrater(writer, crater);
+  putMaterials(writer, pack);
+  writer.put(std::uint32_t(pack.snowfalls.size()));
+  for (const Snowfall& snowfall : pack.snowfalls) putSnowfall(writer, snowfall);
   return std::move(writer.bytes);
 }
 
@@ -334,6 +407,8 @@ Result<ScenePack> decodePack(std::span<const std::uint8_t> bytes) {
   }
   visitScalars(pack.crater_limits, get);
   for (auto count = getCount(); count > 0 && !reader.failed(); --count) pack.craters.push_back(getCrater(reader));
+  getMaterials(reader, pack);
+  for (auto count = getCount(); count > 0 && !reader.failed(); --count) pack.snowfalls.push_back(getSnowfall(reader));
   if (reader.failed()) return Error{"pack: truncated"};
   if (reader.left() > 0) return Error{"pack: " + std::to_string(reader.left()) + " bytes too many"};
   if (Status status = validatePack(pack); !status) return Error{status.error()};

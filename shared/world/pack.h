@@ -8,8 +8,10 @@
 
 #include "shared/base/result.h"
 #include "shared/world/crater.h"
+#include "shared/world/material.h"
 #include "shared/world/parameters.h"
 #include "shared/world/pose.h"
+#include "shared/world/snowfall.h"
 
 namespace spoor {
 
@@ -77,7 +79,13 @@ struct Body {
   std::int32_t lift_q = 0;                 // how high the foot is lifted
   std::int32_t phase_q = 0;                // where in its stride the foot starts
   std::uint8_t follows_slope = 0;          // 1: pitch and roll with the base under its box
+  std::int32_t force_n = 0;  // newtons with which it pushes soil the way it moves, for drift, 0 .. kForceLimit
+  // Its size, a share of the mesh's: the first up to one tick, evenly to the last at another.
+  std::int32_t first_scale_q16 = kFullScale, last_scale_q16 = kFullScale;  // 1 .. kFullScale
+  std::int32_t first_scale_tick = 0, last_scale_tick = 0;                  // first <= last
 };
+
+inline constexpr std::int32_t kForceLimit = 1 << 26;
 
 /// Everything that steers a session besides its inputs, in integers. See pack.cpp for the canonical bytes.
 struct ScenePack {
@@ -93,6 +101,8 @@ struct ScenePack {
                                         // [numVerticesPerRow]
   std::int32_t normal_blur_passes = 0;  // 0..16, of the 3 x 3 Gaussian over drawn normals [numIterationsBlurNormals]
   Parameters parameters;                // at first; a session may change them
+  std::vector<Material> materials = {{"soil", {236, 240, 245}, MaterialTexture::snow}};  // 1 .. kMaterialsLimit
+  MaterialMap material_map;
   BaseKind base_kind = BaseKind::noise;
   NoiseBase noise;     // where base_kind is noise, else as made
   SampleBase samples;  // where base_kind is samples, else as made
@@ -100,7 +110,8 @@ struct ScenePack {
   std::vector<Path> paths;
   std::vector<Body> bodies;
   CraterLimits crater_limits;
-  std::vector<Crater> craters;  // that the scene times itself: by tick, ids from 0 on
+  std::vector<Crater> craters;      // that the scene times itself: by tick, ids from 0 on
+  std::vector<Snowfall> snowfalls;  // there from before the first tick
 };
 
 inline constexpr std::int32_t kWorldCellsLimit = 1 << 24;
@@ -112,8 +123,8 @@ inline constexpr std::size_t kPackBytesLimit = std::size_t(256) << 20;
 /// Checks every value's range and every index. The error names the field.
 [[nodiscard]] Status validatePack(const ScenePack& pack);
 
-/// Checks parameters for a session of this pack: every value's range, and that a world without active areas is small
-/// enough. The error names the field.
+/// Checks parameters for a session of this pack: every value's range, that they are of its materials, and that a world
+/// without active areas is small enough. The error names the field.
 [[nodiscard]] Status validateParameters(const ScenePack& pack, const Parameters& parameters);
 
 /// The canonical bytes. The pack must be valid (asserted).

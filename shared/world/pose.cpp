@@ -35,7 +35,10 @@ Rotation rotationOf(const Pose& pose) {
   const Matrix pitch = {pitch_c, 0, -pitch_s, 0, one, 0, pitch_s, 0, pitch_c};
   const Matrix roll = {one, 0, 0, 0, roll_c, -roll_s, 0, roll_s, roll_c};
   const Matrix spin = {spin_c, 0, spin_s, 0, one, 0, -spin_s, 0, spin_c};
-  return {product(product(yaw, pitch), product(roll, spin))};
+  Matrix matrix = product(product(yaw, pitch), product(roll, spin));
+  if (pose.scale_q16 != kFullScale)
+    for (std::int32_t& entry : matrix) entry = std::int32_t(std::int64_t(entry) * pose.scale_q16 >> 16);
+  return {matrix};
 }
 
 std::array<std::int32_t, 3> rotate(const Rotation& rotation, const std::array<std::int32_t, 3>& point) {
@@ -55,7 +58,7 @@ Pose interpolate(const Pose& from, const Pose& to, int step, int step_count) {
   return {blend(from.x_q, to.x_q, step, step_count),         blend(from.y_q, to.y_q, step, step_count),
           blend(from.z_q, to.z_q, step, step_count),         blendTurn(from.yaw, to.yaw, step, step_count),
           blendTurn(from.pitch, to.pitch, step, step_count), blendTurn(from.roll, to.roll, step, step_count),
-          blendTurn(from.spin, to.spin, step, step_count)};
+          blendTurn(from.spin, to.spin, step, step_count),   blend(from.scale_q16, to.scale_q16, step, step_count)};
 }
 
 }  // namespace spoor

@@ -9,6 +9,14 @@ namespace {
 
 constexpr std::int64_t kTurnBlend_q = 5000;  // a corner is turned over half a metre on either side of it
 
+std::int32_t scaleOf(const Body& body, std::int32_t tick) {
+  const std::int64_t ticks = std::int64_t(body.last_scale_tick) - body.first_scale_tick;
+  const std::int64_t passed = std::clamp<std::int64_t>(std::int64_t(tick) - body.first_scale_tick, 0, ticks);
+  if (passed == ticks) return body.last_scale_q16;
+  return std::int32_t(body.first_scale_q16 +
+                      floorDiv((std::int64_t(body.last_scale_q16) - body.first_scale_q16) * passed, ticks));
+}
+
 }  // namespace
 
 Script::Script(const BaseTerrain& base) : base_(&base) {
@@ -101,8 +109,16 @@ Pose Script::bodyPose(const Body& body, std::int32_t tick) const {
     lift = 4 * std::int64_t(body.lift_q) * swing * (half - swing) / (half * half);
   }
 
+  const std::int32_t scale_q16 = scaleOf(body, tick);
+  const auto scaled = [scale_q16](std::int32_t length_q) {
+    return std::int32_t(std::int64_t(length_q) * scale_q16 >> 16);
+  };
   const Place place = placeAt(body.path_index, travelled);
-  const Box& box = boxes_[std::size_t(body.mesh_index)];
+  Box box = boxes_[std::size_t(body.mesh_index)];
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lowest[axis] = scaled(box.lowest[axis]);
+    box.highest[axis] = scaled(box.highest[axis]);
+  }
   Pose pose;
   pose.yaw = place.heading;
   const Rotation heading = rotationOf(pose);
@@ -114,6 +130,7 @@ Pose Script::bodyPose(const Body& body, std::int32_t tick) const {
     const auto at = worldOf(forward, left);
     return std::int64_t(base_->heightAt(at[0], at[1]));
   };
+  pose.scale_q16 = scale_q16;
   pose.x_q = worldOf(0, 0)[0];
   pose.y_q = worldOf(0, 0)[1];
   std::int64_t ground = groundAt(0, 0);

@@ -17,6 +17,9 @@ Status validatePoses(const ScenePack& pack, std::span<const Pose> poses) {
                         pose.y_q < INT32_MAX - edge && pose.z_q > -rules::kHeightLimit + edge &&
                         pose.z_q < rules::kHeightLimit - edge;
     if (!inside) return Error{"body " + std::to_string(i) + ": position out of range"};
+    if (pose.scale_q16 < 1 || pose.scale_q16 > kFullScale)
+      return Error{"body " + std::to_string(i) + ": scale " + std::to_string(pose.scale_q16) + " is not within 1 .. " +
+                   std::to_string(kFullScale)};
   }
   return {};
 }
@@ -29,6 +32,8 @@ std::uint64_t stateHash(const WorldState& state) {
   putParameters(writer, state.parameters);
   writer.put(std::uint32_t(state.craters.size()));
   writer.put(state.craters.hash());
+  writer.put(std::uint32_t(state.snowfalls.size()));
+  for (const Snowfall& snowfall : state.snowfalls) putSnowfall(writer, snowfall);
   writer.put(std::uint32_t(state.poses.size()));
   for (const Pose& pose : state.poses) putPose(writer, pose);
   for (const Pose& pose : state.previous_poses) putPose(writer, pose);
@@ -40,9 +45,14 @@ WorldState initialState(const PackId& id, const BaseTerrain& base) {
   state.pack_id = id;
   state.parameters = base.pack().parameters;
   state.craters = CraterSet(base.pack());
+  state.snowfalls = base.pack().snowfalls;
   state.poses = Script(base).poses(0);
   state.previous_poses = state.poses;
   return state;
+}
+
+DormantGround dormantGround(const WorldState& state, const BaseTerrain& base) {
+  return {&base, &state.craters, state.snowfalls, state.tick};
 }
 
 bool recount(const WorldState& state) {

@@ -10,6 +10,8 @@
 namespace spoor {
 namespace {
 
+static_assert(int(Plane::material) + 1 == kPlaneCount);
+
 std::uint64_t keyOf(TileCoordinate at) { return std::uint64_t(std::uint32_t(at.y)) << 32 | std::uint32_t(at.x); }
 
 void fillBedrock(const ScenePack& pack, TileCoordinate at, const PlaneCells& height, PlaneCells& bedrock) {
@@ -20,6 +22,30 @@ void fillBedrock(const ScenePack& pack, TileCoordinate at, const PlaneCells& hei
       const int i = y * rules::kTileSize + x;
       bedrock[i] = height[i] - (inside ? pack.soil_depth_q : 0);
     }
+}
+
+/// All that fell on a tile up to now.
+std::int64_t takeSnow(const ScenePack& pack, TileCoordinate at, std::span<const Snowfall> snowfalls, std::int32_t tick,
+                      PlaneCells& height) {
+  if (snowfalls.empty()) return 0;
+  PlaneCells depth;
+  fillSnow(pack, snowfalls, tick, at.x * rules::kTileSize, at.y * rules::kTileSize, 1, rules::kTileSize,
+           rules::kTileSize, depth);
+  std::int64_t gained = 0;
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    const std::int32_t ground = rules::snowGround(height[i], depth[i]);
+    gained += ground - height[i];
+    height[i] = ground;
+  }
+  return gained;
+}
+
+/// nullptr: 0 everywhere.
+std::unique_ptr<PlaneCells> materialsOf(const BaseTerrain& base, TileCoordinate at) {
+  if (base.pack().material_map.kind == MaterialMapKind::one) return nullptr;
+  auto cells = std::make_unique<PlaneCells>();
+  base.fillMaterials(at.x * rules::kTileSize, at.y * rules::kTileSize, 1, rules::kTileSize, rules::kTileSize, *cells);
+  return std::ranges::any_of(*cells, [](std::int32_t material) { return material != 0; }) ? std::move(cells) : nullptr;
 }
 
 }  // namespace
@@ -39,7 +65,10 @@ std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, 
   tile->ground = tile->initial;
   std::unique_ptr<TileCraters> known;
   if (dormant.craters != nullptr)
-    tile->ground += addCraters(at, tile->height(), *tile->bedrock, *dormant.craters, 0, known);
+    tile->first_craters = addCraters(at, tile->height(), *tile->bedrock, *dormant.craters, 0, known);
+  tile->first_snow = takeSnow(base.pack(), at, dormant.snowfalls, dormant.tick, tile->height());
+  tile->ground += tile->first_craters + tile->first_snow;
+  tile->planes[int(Plane::material)] = materialsOf(base, at);
   tile->hash = tileHash(*tile);
   return tile;
 }
@@ -100,7 +129,12 @@ Tile& TileStore::insert(std::unique_ptr<Tile> tile) {
   std::unique_ptr<Tile>& slot = tiles_[keyOf(tile->at)];
   SPOOR_ASSERT(slot == nullptr);
   slot = std::move(tile);
+  by_beat_[std::size_t(-snowBeat(slot->at, 0))].push_back(slot.get());
   return *slot;
+}
+
+std::span<Tile* const> TileStore::atBeat(std::int32_t tick) const {
+  return by_beat_[std::size_t(-tick & (rules::kSnowBeat - 1))];
 }
 
 void TileStore::setWake(Tile& tile, WakeMask mask) {
@@ -154,12 +188,12 @@ std::vector<const Tile*> TileStore::meeting(const ScenePack& pack, std::span<con
 }
 
 std::size_t TileStore::memoryBytes() const {
-  std::size_t compacted = 0, cratered = 0;
+  std::size_t planes = 0, cratered = 0;
   for (const auto& [key, tile] : tiles_) {
-    compacted += tile->compacted() != nullptr ? 1 : 0;
+    for (const auto& plane : tile->planes) planes += plane != nullptr ? 1 : 0;
     cratered += tile->craters != nullptr ? 1 : 0;
   }
-  return tiles_.size() * (sizeof(Tile) + 2 * sizeof(PlaneCells) + 4 * sizeof(void*)) + compacted * sizeof(PlaneCells) +
+  return tiles_.size() * (sizeof(Tile) + sizeof(PlaneCells) + 4 * sizeof(void*)) + planes * sizeof(PlaneCells) +
          cratered * sizeof(TileCraters) + tiles_.bucket_count() * sizeof(void*);
 }
 
@@ -176,7 +210,9 @@ std::uint64_t planeHash(TileCoordinate at, Plane plane, const PlaneCells* cells)
 }
 
 std::uint64_t tileHash(const Tile& tile) {
-  return planeHash(tile.at, Plane::height, &tile.height()) + planeHash(tile.at, Plane::compacted, tile.compacted());
+  std::uint64_t hash = 0;
+  for (int plane = 0; plane < kPlaneCount; ++plane) hash += planeHash(tile.at, Plane(plane), tile.planes[plane].get());
+  return hash;
 }
 
 std::uint64_t tileStateHash(const Tile& tile) {

@@ -10,8 +10,12 @@
 namespace spoor {
 
 /// Named layers of a tile. Store, deltas, snapshots and hashes are written over a set of them.
-enum class Plane : std::uint8_t { height = rules::kHeightPlane, compacted = rules::kCompactedPlane };
-inline constexpr int kPlaneCount = 2;
+enum class Plane : std::uint8_t {
+  height = rules::kHeightPlane,
+  compacted = rules::kCompactedPlane,
+  material = rules::kMaterialPlane
+};
+inline constexpr int kPlaneCount = 3;
 
 /// Bits of a wake mask: which tiles a changed tile keeps active in the next tick. Bit (dy + 1) * 3 + (dx + 1); the tile
 /// itself is bit 4. 0: asleep.
@@ -40,6 +44,8 @@ struct Tile {
   std::int64_t ground = 0;               // sum of its heights, 0.1 mm * cells
   std::int64_t initial = 0;              // the same of the base
   std::int64_t compacted_sum = 0;
+  std::int64_t first_craters = 0;  // what craters and snowfalls had done to it when it became live
+  std::int64_t first_snow = 0;
 
   PlaneCells& height() { return *planes[int(Plane::height)]; }
   const PlaneCells& height() const { return *planes[int(Plane::height)]; }
@@ -48,6 +54,8 @@ struct Tile {
   const PlaneCells* compacted() const { return planes[int(Plane::compacted)].get(); }
   /// The same, made where it was not there.
   PlaneCells& makeCompacted();
+  /// Number of each cell's material; nullptr: 0 everywhere.
+  const PlaneCells* material() const { return planes[int(Plane::material)].get(); }
 };
 
 /// Sums over live tiles, 0.1 mm * cells. Balanced where error() is 0.
@@ -61,8 +69,8 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
-/// A tile as it is at the moment it becomes live: dormant ground, so that what craters did to it so far is
-/// ground - initial. `at` must lie in the world (asserted).
+/// A tile as it is at the moment it becomes live: dormant ground, and its materials. `at` must lie in the world
+/// (asserted).
 std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, std::int32_t tick);
 
 /// The cells of a tile, those outside the world too.
@@ -93,6 +101,9 @@ class TileStore {
   /// Tiles whose wake mask is not 0, in no particular order: for filling ordered sets only.
   const std::vector<Tile*>& awake() const { return awake_; }
 
+  /// Live tiles that take snow in a tick, should it snow (snowBeat), in no particular order.
+  std::span<Tile* const> atBeat(std::int32_t tick) const;
+
   /// Live tiles in (y, x) order.
   std::vector<Tile*> sorted();
   std::vector<const Tile*> sorted() const;
@@ -107,6 +118,7 @@ class TileStore {
  private:
   std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_;
   std::vector<Tile*> awake_;
+  std::array<std::vector<Tile*>, rules::kSnowBeat> by_beat_;  // by snowBeat of tick 0, negated
 };
 
 /// Sum of the hashes of the cells of one plane of the tile at `at`; nullptr: 0 everywhere.

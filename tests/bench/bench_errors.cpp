@@ -188,7 +188,7 @@ class PileView {
 
   PileShape shape(const Parameters& parameters) const {
     PileShape result;
-    const double slope = parameters.slope_threshold_q, middle = side_ / 2;
+    const double slope = parameters.materials[0].slope_threshold_q, middle = side_ / 2;
     double volume = 0, sum_x = 0, sum_y = 0;
     for (int y = 0; y < side_; ++y)
       for (int x = 0; x < side_; ++x) {
@@ -196,13 +196,13 @@ class PileView {
         sum_x += at(x, y) * (x - middle);
         sum_y += at(x, y) * (y - middle);
         result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 1, 0, parameters.slope_threshold_q) / slope);
+            std::max(result.steepest_excess, excess(x, y, 1, 0, parameters.materials[0].slope_threshold_q) / slope);
         result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 0, 1, parameters.slope_threshold_q) / slope);
+            std::max(result.steepest_excess, excess(x, y, 0, 1, parameters.materials[0].slope_threshold_q) / slope);
         for (const int dx : {1, -1})
           result.steepest_excess =
-              std::max(result.steepest_excess,
-                       excess(x, y, dx, 1, parameters.diagonal_threshold_q) / double(parameters.diagonal_threshold_q));
+              std::max(result.steepest_excess, excess(x, y, dx, 1, parameters.materials[0].diagonal_threshold_q) /
+                                                   double(parameters.materials[0].diagonal_threshold_q));
       }
     const double radius = std::cbrt(3 * volume / (std::numbers::pi * slope));
     double difference = 0;
@@ -257,7 +257,7 @@ constexpr int kSweepsPerTick = 10;
 void measureRule(const Settings& settings, SlopeRule rule, double roughness, const std::string& name, Report& report) {
   BenchScene scene = makeBenchScene("small_pile");
   scene.pack.parameters.slopes = rule;
-  scene.pack.parameters.roughness_q16 = std::int32_t(roughness * kOneQ16);
+  scene.pack.parameters.materials[0].roughness_q16 = std::int32_t(roughness * kOneQ16);
   scene.pack.parameters.sweeps_per_tick = kSweepsPerTick;
   scene.id = packId(encodePack(scene.pack));
   auto backend = openEngine(settings.engine);

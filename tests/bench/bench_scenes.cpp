@@ -31,8 +31,8 @@ ScenePack emptyScene(const std::string& name, std::int32_t cells) {
   pack.cell_q = kCell_q;
   pack.soil_depth_q = 10000;
   pack.parameters.obstacle_threshold_q = 10;
-  pack.parameters.slope_threshold_q = 350;
-  pack.parameters.diagonal_threshold_q = 494;
+  pack.parameters.materials[0].slope_threshold_q = 350;
+  pack.parameters.materials[0].diagonal_threshold_q = 494;
   pack.noise = {1, std::int64_t(1) << 24, 2, 0, 20000};
   return pack;
 }
@@ -133,7 +133,7 @@ constexpr std::int32_t kCarDistance_q = 300000;
 Parameters thesisParameters() {
   Parameters parameters;
   parameters.nearest = NearestSearch::jump_flooding;
-  parameters.roughness_q16 = kOneQ16 / 2;
+  parameters.materials[0].roughness_q16 = kOneQ16 / 2;
   parameters.obstacle_threshold_q = 1000;
   parameters.capacity_rounds = 1;
   return parameters;
@@ -163,7 +163,7 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
         const std::int64_t y = tile_y * rules::kTileSize + i / rules::kTileSize - middle;
         const std::int64_t slope_length = radius - std::int64_t(isqrt(std::uint64_t(x * x + y * y)));
         const std::int64_t added_q =
-            2 * scene.pack.parameters.slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
+            2 * scene.pack.parameters.materials[0].slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
         tile->height()[std::size_t(i)] += std::int32_t(added_q);
         tile->ground += added_q;
       }
@@ -237,8 +237,8 @@ BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terr
   pack.cell_q = (terrain_size_m * rules::kUnitsPerMetre + heightmap_size / 2) / heightmap_size;
   pack.parameters = parameters;
   // The thesis gives no threshold for its measurements: 35 degrees, as a slope over one cell.
-  pack.parameters.slope_threshold_q = pack.cell_q * 7 / 10;
-  pack.parameters.diagonal_threshold_q = pack.cell_q * 99 / 100;
+  pack.parameters.materials[0].slope_threshold_q = pack.cell_q * 7 / 10;
+  pack.parameters.materials[0].diagonal_threshold_q = pack.cell_q * 99 / 100;
   pack.noise.lattice_step_q32 = (std::int64_t(1) << 32) * pack.cell_q / 160000;  // dunes of 16 m
   addMesh(pack, thesisCar(pack.cell_q));
   const std::int32_t side_q = heightmap_size * pack.cell_q;

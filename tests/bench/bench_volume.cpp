@@ -111,8 +111,8 @@ void measureVolume(const Settings& settings, Report& report) {
              "Table 5.9: volume of the world, active areas off, compression 0 (the thesis: 889192448 throughout)",
              "thesis table 5.9", thesis, report);
   Parameters spoor = thesisSsboMultiple();
-  spoor.compression_q16 = kOneQ16 / 2;
-  spoor.compaction_limit_q16 = kOneQ16 / 2;
+  spoor.materials[0].compression_q16 = kOneQ16 / 2;
+  spoor.materials[0].compaction_limit_q16 = kOneQ16 / 2;
   measureWay(settings, "The same with active areas on and compression 0.5, which the thesis could not do",
              "thesis table 5.9, areas and compression", spoor, report);
 }

@@ -1,0 +1,33 @@
+// Snowfall: what has fallen on a cell by a tick, without the ticks between.
+//
+// Layer after layer of one unit falls; of the layer that is falling a cell has its unit already or not yet, each layer
+// in another random order. So the sum over cells grows evenly and every cell lies within a unit of the mean.
+// Source: the seed post's "step of accumulation that randomly add some snow across the texture", in closed form.
+#ifndef SPOOR_RULES_SNOWFALL_H
+#define SPOOR_RULES_SNOWFALL_H
+#include "mix.h"
+
+SPOOR_RULES_BEGIN
+
+RULE_CONST kSnowBeat = 16;  // ticks from one to the next at which a tile takes what fell; a power of two
+
+/// Depth of a snowfall on the mean: layers that are down, and the share of the next one in 2^-32.
+struct SnowDepth {
+  int layers;
+  uint share;
+};
+
+/// Has a cell its unit of the layer that is falling?
+RULE int snowFlake(uint seed, int x, int y, SnowDepth depth) {
+  uint order = mix32(uint(x) * 0x9e3779b1u + mix32(uint(y) * 0x85ebca77u + mix32(uint(depth.layers) + seed)));
+  return order < depth.share ? 1 : 0;
+}
+
+/// What fell on a cell in all, height units.
+RULE int snowOn(uint seed, int x, int y, SnowDepth depth) { return depth.layers + snowFlake(seed, x, y, depth); }
+
+/// Height of a cell that takes `fallen` more.
+RULE int snowGround(int height, int fallen) { return minInt(height + fallen, kHeightLimit); }
+
+SPOOR_RULES_END
+#endif
