@@ -293,11 +293,13 @@ std::uint64_t Oracle::stateHash() const {
   putParameters(rest, parameters_);
   rest.put(std::uint32_t(records_.size()));
   rest.put(cratersHash());
+  rest.put(std::uint32_t(0));  // snowfalls
   rest.put(std::uint32_t(poses_.size()));
   for (const auto* poses : {&poses_, &previous_poses_})
     for (const Pose& pose : *poses) {
       for (const std::int32_t value : {pose.x_q, pose.y_q, pose.z_q}) rest.put(value);
       for (const Turn turn : {pose.yaw, pose.pitch, pose.roll, pose.spin}) rest.put(turn);
+      rest.put(pose.scale_q16);
     }
   return sum + hashBytes(rest.bytes);
 }

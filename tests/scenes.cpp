@@ -354,6 +354,12 @@ std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles) {
   return steepest;
 }
 
+TilePlanes planesWith(const Tile& tile, const PlaneCells& height) {
+  TilePlanes planes = planesOf(tile);
+  planes[int(Plane::height)] = &height;
+  return planes;
+}
+
 std::int32_t heightOf(const WorldState& state, int x, int y) {
   const Tile* tile = state.tiles.find({x / rules::kTileSize, y / rules::kTileSize});
   SPOOR_ASSERT(tile != nullptr);

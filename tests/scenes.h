@@ -86,6 +86,9 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count);
 /// The highest difference over what rests, between inside neighbours of live tiles that are both live (0: all rest).
 std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles);
 
+/// What a tile would be with other heights, for differenceOf.
+TilePlanes planesWith(const Tile& tile, const PlaneCells& height);
+
 /// Height of a cell of a live tile.
 std::int32_t heightOf(const WorldState& state, int x, int y);
 

@@ -91,7 +91,7 @@ class NearestBench {
       const int tasks = (shape_.side + domain_.columnsPerTask() - 1) / domain_.columnsPerTask();
       domain_.stale_columns.assign(std::size_t(tasks), 1);
       const auto start = Clock::now();
-      runNearest({pack_, parameters_, kernels(), pool_, area_}, domain_);
+      runNearest({pack_, 1, parameters_, kernels(), pool_, area_}, domain_);
       times.push_back(millisecondsSince(start));
     }
     time_ms = percentile(times, 0.5);
