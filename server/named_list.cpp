@@ -86,10 +86,6 @@ double readSlope(const MaterialRules& rules, std::int32_t cell_q) {
 
 void applyRepose(double value, std::int32_t cell_q, MaterialRules& rules) { setRepose(value, cell_q, rules); }
 
-double readRepose(const MaterialRules& rules, std::int32_t cell_q) {
-  return double(rules.repose_arc_q) / cell_q * 180 / std::numbers::pi;
-}
-
 void applyFriction(double value, std::int32_t, MaterialRules& rules) {
   rules.friction_inverse_q32 = std::int32_t(std::llround(std::ldexp(value, 32)));
 }
@@ -153,6 +149,7 @@ std::vector<NamedParameter> makeList() {
   return {
       // Short names first: what comes after overrides them.
       {"preset", choice, 0, 2, "", {"thesis-iterative", "thesis-ssbo", "thesis-ssbo-multiple"}, "", applyPreset, nullptr},
+      {"angleOfRepose", number, 0, kReposeLimitDeg, "degrees", {}, "", nullptr, nullptr, applyRepose, nullptr},
       {"terrainSize", number, 0.0001, 208000, "m", {}, kWorldIsFixed, SPOOR_FIELD(terrain_size_m)},
       {"heightmapSize", integer, 1, kWorldCellsLimit, "cells", {}, kWorldIsFixed, SPOOR_FIELD(heightmap_size)},
       {"numVerticesPerRow", integer, 0, 4096, "patches", {}, kDrawingIsFixed, SPOOR_FIELD(patches_per_row)},
@@ -160,7 +157,6 @@ std::vector<NamedParameter> makeList() {
       {"compression", number, 0, 1, "", {}, "", SPOOR_SHARE(compression_q16)},
       {"roughness", number, 0, 1, "", {}, "", SPOOR_SHARE(roughness_q16)},
       {"slopeThreshold", number, 0, 20000, "radians per metre", {}, "", nullptr, nullptr, applySlope, readSlope},
-      {"angleOfRepose", number, 0, kReposeLimitDeg, "degrees", {}, "", nullptr, nullptr, applyRepose, readRepose},
       {"numIterationsDisplaceMaterialToContour", integer, 0, kIterationsLimit, "", {}, "",
        SPOOR_FIELD(parameters.displace_iterations)},
       {"numIterationsEvenOutSlopes", integer, 0, kIterationsLimit, "", {}, "", SPOOR_FIELD(parameters.sweeps_per_tick)},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 
 #include "server/plain_number.h"
 #include "shaders/rules/limits.h"
@@ -51,7 +52,9 @@ std::string materialText(const NamedParameter& parameter, std::int32_t cell_q, c
     return parameter.read_of(again, cell_q);
   });
   if (!is_slope) return text;
-  text += " (" + plainNumber(metresOf(rules.slope_threshold_q)) + " m rest";
+  char degrees[32];
+  std::snprintf(degrees, sizeof degrees, "%.3g", std::atan2(rules.slope_threshold_q, cell_q) * 180 / std::numbers::pi);
+  text += " (" + plainNumber(metresOf(rules.slope_threshold_q)) + " m rest, " + degrees + " degrees";
   if (rules.diagonal_threshold_q != diagonalThreshold(rules.slope_threshold_q))
     text += ", diagonally " + plainNumber(metresOf(rules.diagonal_threshold_q)) + " m";
   return text + ")";

@@ -61,8 +61,9 @@ void readSoil(TableReader& soil, TableReader& thesis, const std::vector<NamedVal
   refuseBoth(thesis, "obstacleThreshold", soil, "obstacle_threshold_m");
   refuseBoth(thesis, "numIterationsEvenOutSlopes", soil, "sweeps_per_tick");
   std::vector<NamedValue> preset, single;
-  std::ranges::partition_copy(named, std::back_inserter(preset), std::back_inserter(single),
-                              [](const NamedValue& value) { return value.parameter->isShortName(); });
+  std::ranges::partition_copy(
+      named, std::back_inserter(preset), std::back_inserter(single),
+      [](const NamedValue& value) { return !value.parameter->isOfMaterial() && value.parameter->isShortName(); });
   NamedSettings settings;
   applyToTable(preset, pack.cell_q, thesis, settings, notes);
   pack.parameters = settings.parameters;
