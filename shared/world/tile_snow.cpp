@@ -20,7 +20,7 @@ struct Thresholds {
   std::int32_t side = 0, diagonal = 0;
 };
 
-Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& material) {
+Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& material, std::int32_t cell_q) {
   switch (parameters.slopes) {
     case SlopeRule::exchange:
     case SlopeRule::flux:
@@ -33,7 +33,8 @@ Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& mater
   }
   if (parameters.drift_weights == DriftWeights::slope) return {material.slope_threshold_q, kNeverSteep};
   if (parameters.drift_weights == DriftWeights::none) return {0, kNeverSteep};
-  const std::int64_t rests = (std::int64_t(material.repose_arc_q) << 16) / std::max(material.diffusion_q16, 1);
+  const std::int64_t arc_q = std::int64_t(quarterArc(cell_q)) * material.repose_q16;
+  const std::int64_t rests = arc_q / std::max(material.diffusion_q16, 1);
   return {std::int32_t(std::min<std::int64_t>(rests, kNeverSteep)), kNeverSteep};
 }
 
@@ -85,10 +86,10 @@ void setWake(Tile& tile, WakeMask mask, WorldState& state) {
 }
 
 /// Tiles that are all asleep and have their snow.
-void wakeUnstable(std::span<Tile* const> tiles, WorldState& state) {
+void wakeUnstable(std::span<Tile* const> tiles, const ScenePack& pack, WorldState& state) {
   std::vector<Thresholds> thresholds;
   for (const MaterialRules& material : state.parameters.materials)
-    thresholds.push_back(thresholdsOf(state.parameters, material));
+    thresholds.push_back(thresholdsOf(state.parameters, material, pack.cell_q));
   std::vector<WakeMask> masks;
   for (const Tile* tile : tiles) {
     Surroundings around;
@@ -136,7 +137,7 @@ SnowOfTick::SnowOfTick(WorldState& state, const ScenePack& pack, std::int32_t ti
     snowOnTile(*tile, pack, tick, state);
     if (tile->wake_mask == 0) asleep.push_back(tile);
   }
-  wakeUnstable(asleep, state);
+  wakeUnstable(asleep, pack, state);
 }
 
 std::vector<Tile*> SnowOfTick::tiles() const {
