@@ -64,16 +64,17 @@ std::optional<double> readVariant(const NamedSettings& settings, std::int32_t) {
   return double(int(nearest) - int(NearestSearch::jump_flooding));
 }
 
-/// The angle of repose as an arc of a cell's side.
-std::int32_t reposeArc(double angle, std::int32_t cell_q) {
-  return std::int32_t(std::clamp<long long>(std::llround(angle * cell_q), 0, quarterArc(cell_q) - 1));
+/// An angle in radians as a share of a right angle.
+std::int32_t reposeShare(double angle) {
+  const double share = angle * 2 / std::numbers::pi * kOneQ16;
+  return std::int32_t(std::clamp<long long>(std::llround(share), 0, kReposeLimit));
 }
 
 void applySlope(double value, std::int32_t cell_q, MaterialRules& rules) {
   rules.slope_threshold_q = slopeThreshold(value, cell_q);
   rules.diagonal_threshold_q = diagonalThreshold(rules.slope_threshold_q);
   const bool never = rules.slope_threshold_q == kNeverSteep;
-  rules.repose_arc_q = reposeArc(never ? std::numbers::pi : std::atan2(rules.slope_threshold_q, cell_q), cell_q);
+  rules.repose_q16 = reposeShare(never ? std::numbers::pi / 2 : std::atan2(rules.slope_threshold_q, cell_q));
 }
 
 /// In the middle of the angles that give the threshold.
@@ -213,7 +214,7 @@ bool setRepose(double repose_deg, std::int32_t cell_q, MaterialRules& rules) {
   const auto threshold = [](double units) { return std::int32_t(std::floor(units + 1e-6)); };
   rules.slope_threshold_q = std::max(1, threshold(rise_q));
   rules.diagonal_threshold_q = std::max(1, threshold(rise_q * std::numbers::sqrt2));
-  rules.repose_arc_q = reposeArc(angle, cell_q);
+  rules.repose_q16 = reposeShare(angle);
   return threshold(rise_q) < 1;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 
 #include "server/plain_number.h"
 #include "shaders/rules/limits.h"
@@ -53,7 +52,7 @@ std::string materialText(const NamedParameter& parameter, std::int32_t cell_q, c
   });
   if (!is_slope) return text;
   char degrees[32];
-  std::snprintf(degrees, sizeof degrees, "%.3g", std::atan2(rules.slope_threshold_q, cell_q) * 180 / std::numbers::pi);
+  std::snprintf(degrees, sizeof degrees, "%.3g", double(rules.repose_q16) * 90 / kOneQ16);
   text += " (" + plainNumber(metresOf(rules.slope_threshold_q)) + " m rest, " + degrees + " degrees";
   if (rules.diagonal_threshold_q != diagonalThreshold(rules.slope_threshold_q))
     text += ", diagonally " + plainNumber(metresOf(rules.diagonal_threshold_q)) + " m";
@@ -183,6 +182,14 @@ std::string rangeText(const NamedParameter& parameter) {
          std::string(parameter.unit);
 }
 
+bool isMaterialName(std::string_view name) {
+  constexpr std::size_t limit = 64;  // validateMaterials
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && name.size() <= limit && std::ranges::all_of(name, fits);
+}
+
 std::string nameOf(const NamedValue& value) {
   return (value.material.empty() ? "" : value.material + ".") + std::string(value.parameter->name);
 }
@@ -197,8 +204,8 @@ Result<NamedValue> parseNamed(std::string_view assignment) {
   std::string_view value = trimmed(assignment.substr(equals + 1));
   const NamedParameter* parameter = findNamed(name);
   if (parameter == nullptr) return Error{quoted(whole_name) + " is no parameter (scenes/README.md, [thesis])"};
-  if (of_one && (dot == 0 || !parameter->isOfMaterial()))
-    return Error{quoted(whole_name) + (dot == 0 ? " names no material" : " is no parameter of a material")};
+  if (of_one && !isMaterialName(whole_name.substr(0, dot))) return Error{quoted(whole_name) + " names no material"};
+  if (of_one && !parameter->isOfMaterial()) return Error{quoted(whole_name) + " is no parameter of a material"};
   if (value.size() >= 2 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
   const auto parsed = parseValue(*parameter, value);
   if (!parsed) {

@@ -61,6 +61,9 @@ struct NamedValue {
   std::string material = {};  // whose it is, of a material's parameter; empty: all materials'
 };
 
+/// Is this a name that --set and the console can say: 1 to 64 letters, digits, _ or -?
+bool isMaterialName(std::string_view name);
+
 /// "roughness", "mud.roughness"
 std::string nameOf(const NamedValue& value);
 
@@ -112,8 +115,8 @@ std::int32_t slopeThreshold(double per_metre, std::int32_t cell_q);
 /// The threshold of diagonal neighbours, sqrt(2) further apart, rounded down.
 std::int32_t diagonalThreshold(std::int32_t slope_threshold_q);
 
-/// Sets both thresholds and the arc of a material from its angle of repose. Thresholds are rounded down, the arc to
-/// nearest; no threshold is 0.
+/// Sets both thresholds and the angle of a material. Thresholds are rounded down, the angle to nearest; no threshold is
+/// 0.
 /// @param repose_deg  0 .. kReposeLimitDeg
 /// Returns whether the angle is less than 0.1 mm per cell, so that a threshold was rounded up.
 bool setRepose(double repose_deg, std::int32_t cell_q, MaterialRules& rules);

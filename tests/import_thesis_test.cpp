@@ -38,7 +38,7 @@ Parameters defaults() {
   parameters.obstacle_threshold_q = 10;
   parameters.materials[0].slope_threshold_q = 350;  // tan 35 * 500
   parameters.materials[0].diagonal_threshold_q = 495;
-  parameters.materials[0].repose_arc_q = 305;  // 35 degrees * 500
+  parameters.materials[0].repose_q16 = 25486;  // 35 / 90
   return parameters;
 }
 
@@ -77,13 +77,13 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
        [](ScenePack& p) {
          p.parameters.materials[0].slope_threshold_q = 952;      // 10^4 tan(1.9 * 0.05) = 952.87
          p.parameters.materials[0].diagonal_threshold_q = 1346;  // 952 sqrt 2 = 1346.3
-         p.parameters.materials[0].repose_arc_q = 544;           // atan(952 / 500) * 500 = 543.6
+         p.parameters.materials[0].repose_q16 = 45359;           // atan(952 / 500) * 2 / pi = 0.69208
        }},
       {"angleOfRepose = 45",
        [](ScenePack& p) {
          p.parameters.materials[0].slope_threshold_q = 500;
          p.parameters.materials[0].diagonal_threshold_q = 707;
-         p.parameters.materials[0].repose_arc_q = 393;  // pi / 4 * 500 = 392.7
+         p.parameters.materials[0].repose_q16 = 32768;
        }},
       {"numIterationsDisplaceMaterialToContour = 7", [](ScenePack& p) { p.parameters.displace_iterations = 7; }},
       {"numIterationsEvenOutSlopes = 1000", [](ScenePack& p) { p.parameters.sweeps_per_tick = 1000; }},
@@ -113,8 +113,9 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
       {"slopes = \"drift\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::drift; }},
       {"displacement = \"none\"", [](ScenePack& p) { p.parameters.displacement = Displacement::none; }},
       {"driftWeights = \"none\"", [](ScenePack& p) { p.parameters.drift_weights = DriftWeights::none; }},
-      {"driftWeights = \"displacement\"", [](ScenePack& p) { p.parameters.drift_weights = DriftWeights::displacement; }},
-      {"driftStep = 0.3", [](ScenePack& p) { p.parameters.drift_step_q16 = 19661; }},               // 19660.8
+      {"driftWeights = \"displacement\"",
+       [](ScenePack& p) { p.parameters.drift_weights = DriftWeights::displacement; }},
+      {"driftStep = 0.3", [](ScenePack& p) { p.parameters.drift_step_q16 = 19661; }},              // 19660.8
       {"diffusion = 0.9", [](ScenePack& p) { p.parameters.materials[0].diffusion_q16 = 58982; }},  // 58982.4
       {"frictionInverse = 6e-4",
        [](ScenePack& p) { p.parameters.materials[0].friction_inverse_q32 = 2576980; }},  // 2576980.4
@@ -158,8 +159,8 @@ TEST_F(Thesis, APackWithParametersOutOfRangeIsRefused) {
     wrong[std::size_t(at) + i] = 0xff;
     const auto refused = decodePack(wrong);
     ASSERT_FALSE(refused) << i;
-    EXPECT_TRUE(contains(refused.error(), "pack: parameters: " + std::string(i < 6 ? names[i] : "")))
-        << refused.error();
+    const std::string part = i == count_at ? "pack: truncated" : "pack: parameters: ";
+    EXPECT_TRUE(contains(refused.error(), part + std::string(i < 6 ? names[i] : ""))) << refused.error();
   }
 }
 
@@ -272,7 +273,7 @@ TEST_F(Thesis, WrongKeysNameLineKeyAndReason) {
       {thesisScene("diffusion = 4.1"), {"thesis.diffusion", "0 .. 4 cells^2 per unit of time"}},
       {thesisScene("frictionInverse = 0.5"), {"thesis.frictionInverse", "0 .. 0.4999 cells"}},
       {thesisScene("slopes = \"drift\"\ndriftStep = 16\ndiffusion = 4"),
-       {":10: ", "thesis.driftStep", "10 sweeps a tick of 256 steps each", "are 2560; the limit is 1000"}},
+       {":10: ", "thesis.driftStep", "10 sweeps a tick of 512 steps each", "are 5120; the limit is 1000"}},
       {thesisScene("", "[soil]\nsweeps_per_tick = 1001\n"), {"soil.sweeps_per_tick", "0 .. 1000"}},
   };
   for (const auto& wrong : cases) {
@@ -434,8 +435,8 @@ TEST_F(Thesis, DescriptionsGiveTheSameParametersAgain) {
     parameters.materials[0].slope_threshold_q = std::int32_t(random() % (1u << (random() % 24)));
     parameters.materials[0].diagonal_threshold_q = diagonalThreshold(parameters.materials[0].slope_threshold_q);
     const double repose = std::atan2(parameters.materials[0].slope_threshold_q, cell_q);
-    parameters.materials[0].repose_arc_q =
-        std::min(std::int32_t(std::lround(repose * cell_q)), quarterArc(cell_q) - 1);
+    parameters.materials[0].repose_q16 =
+        std::min(std::int32_t(std::lround(repose * 2 / std::numbers::pi * kOneQ16)), kReposeLimit);
     parameters.materials[0].diffusion_q16 = std::int32_t(random() % (kDiffusionLimit + 1));
     parameters.materials[0].friction_inverse_q32 = std::int32_t(random() % 2147000000);
     parameters.obstacle_threshold_q = std::int32_t(random() % 100000);

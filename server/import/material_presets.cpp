@@ -13,8 +13,8 @@ std::span<const MaterialPreset> materialPresets() {
       {"pebbles", "#8d8a83", pebbles, 0.03, 0.012, 60, 0, 0, 0.9, 3e-4},
       {"sand", "#d8bc8a", sand, 0, 0, 45, 0, 0, 1, 4e-4},
       {"snow", "#ecf0f5", snow, 0, 0, 50, 0.8, 0.6, 0.5, 5e-4},
-      {"dust", "#b7a793", dust, 0, 0, 32, 0.5, 0.4, 1, 8e-4},
-      {"gravel", "#8a8378", gravel, 0.015, 0.006, 40, 0.05, 0.1, 0.8, 3e-4},
+      {"dust", "#b7a793", dust, 0, 0, 40, 0.5, 0.4, 1, 8e-4},
+      {"gravel", "#8a8378", gravel, 0.015, 0.006, 38, 0.05, 0.1, 0.9, 3e-4},
   };
   return list;
 }

@@ -14,15 +14,6 @@ namespace spoor {
 namespace {
 
 constexpr Range kGrainRange{0, 100, "m"};
-constexpr std::size_t kNameLimit = 64;
-
-/// A name that --set and the console can say: MATERIAL.NAME=VALUE,...
-bool isSpeakable(const std::string& name) {
-  const auto letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return !name.empty() && name.size() <= kNameLimit && std::ranges::all_of(name, letter);
-}
 
 const MaterialPreset* readPreset(TableReader& table) {
   std::vector<std::string> names;
@@ -39,8 +30,7 @@ std::int32_t readGrain(TableReader& table, const char* key, double otherwise_m) 
 Material readLook(TableReader& table, const MaterialPreset* preset) {
   Material material;
   material.name = table.text("name", preset ? std::optional(std::string(preset->name)) : std::nullopt);
-  if (!isSpeakable(material.name))
-    table.wrong("name", fmt::format("must be 1 .. {} letters, digits, _ or -", kNameLimit));
+  if (!isMaterialName(material.name)) table.wrong("name", "must be 1 .. 64 letters, digits, _ or -");
   const std::string colour = table.text("colour", std::string(preset ? preset->colour : "#808080"));
   if (const auto channels = parseColour(colour))
     material.colour = *channels;

@@ -136,7 +136,7 @@ void readDemBase(TableReader& base, const SceneErrors& errors, WorldSize size, T
 void checkParameters(TableReader& thesis, const Parameters& parameters) {
   if (sweepsOf(parameters) <= kIterationsLimit) return;
   thesis.wrong(thesis.has("driftStep") ? "driftStep" : "slopes",
-               fmt::format("{} sweeps a tick of {} steps each (so that diffusion * driftStep <= 1/4 in a step) are {}; "
+               fmt::format("{} sweeps a tick of {} steps each (so that diffusion * driftStep is 1/8 at most in each) are {}; "
                            "the limit is {}",
                            parameters.sweeps_per_tick, driftSteps(parameters), sweepsOf(parameters), kIterationsLimit));
 }
