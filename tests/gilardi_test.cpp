@@ -79,7 +79,7 @@ struct Twins {
 
 Twins twinsOf(DriftWeights weights) {
   Twins twins;
-  twins.pack = testPack();
+  twins.pack = noisePack(64, 64, 3, 0, 40000, 50000);
   ScenePack& pack = twins.pack;
   pack.width_cells = pack.height_cells = 64;
   pack.cell_q = 500;
