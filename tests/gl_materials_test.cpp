@@ -234,14 +234,11 @@ TEST_P(GlMaterials, StayWithTilesThatLeaveASmallPool) {
   const World world(std::move(pack));
   Ticks ticks;
   std::vector<Pose> poses = initialPoses(world);
-  for (const int dx : {60000, 60000, 60000, -60000, -60000, -60000})
-    ticks.push_back(poses = {moved(poses[0], dx, 170, -10)});
+  for (const int dx : {40000, 60000, -60000, -40000}) ticks.push_back(poses = {moved(poses[0], dx, 170, -10)});
   GlOptions options = glOptionsOf(GetParam());
   options.pool_tiles = 2;
-  for (const bool ahead : {false, true}) {
-    Simulation simulation(world.base, world.id, makeOwnBackend(options)), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, ticks, ahead));
-  }
+  Simulation simulation(world.base, world.id, makeOwnBackend(options)), native = world.simulate();
+  compareTicks(simulation, native, ticks, true);
 }
 
 TEST_P(GlMaterials, BodiesThatGrowAndShrinkPressAsOnNative) {
