@@ -94,7 +94,7 @@ void runPush(const NativeContext& context, const SubStep& sub_step) {
     }
   if (context.parameters.displacement == Displacement::none) {
     area.clearUnderside(context.pack, context.pool);
-    std::ranges::fill(area.lowest_underside, rules::kNoUnderside);
+    runDepth(context, {});  // of no body: the world's border stays closed
   }
 }
 

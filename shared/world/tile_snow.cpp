@@ -38,10 +38,13 @@ Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& mater
   return {std::int32_t(std::min<std::int64_t>(rests, kNeverSteep)), kNeverSteep};
 }
 
-void addCells(const Tile& tile, int dx, int dy, const std::vector<Thresholds>& thresholds, Surroundings& around) {
+void addCells(const Tile& tile, int dx, int dy, const ScenePack& pack, const std::vector<Thresholds>& thresholds,
+              Surroundings& around) {
   for (int y = std::max(-1, dy * kSize); y < std::min(kSize + 1, (dy + 1) * kSize); ++y)
     for (int x = std::max(-1, dx * kSize); x < std::min(kSize + 1, (dx + 1) * kSize); ++x) {
-      const auto from = std::size_t((y - dy * kSize) * kSize + x - dx * kSize);
+      const int column = x - dx * kSize, row = y - dy * kSize;
+      if (tile.at.x * kSize + column >= pack.width_cells || tile.at.y * kSize + row >= pack.height_cells) continue;
+      const auto from = std::size_t(row * kSize + column);
       const auto to = std::size_t((y + 1) * kSide + x + 1);
       const Thresholds& own = thresholds[tile.material() == nullptr ? 0 : std::size_t((*tile.material())[from])];
       around.height[to] = tile.height()[from];
@@ -96,7 +99,7 @@ void wakeUnstable(std::span<Tile* const> tiles, const ScenePack& pack, WorldStat
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         const Tile* near = state.tiles.find({tile->at.x + dx, tile->at.y + dy});
-        if (near != nullptr && near->wake_mask == 0) addCells(*near, dx, dy, thresholds, around);
+        if (near != nullptr && near->wake_mask == 0) addCells(*near, dx, dy, pack, thresholds, around);
       }
     masks.push_back(unstable(around));
   }
