@@ -131,7 +131,8 @@ class TableMaker {
                own.compression_q16,
                own.compaction_limit_q16,
                own.friction_inverse_q32,
-               {}};
+               0,
+               0};
       if (plan_.parameters.slopes == SlopeRule::exchange) {
         entry.slope_threshold = rules::exchangeThreshold(own.slope_threshold_q);
         entry.diagonal_threshold = rules::exchangeThreshold(own.diagonal_threshold_q);

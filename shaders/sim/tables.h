@@ -115,7 +115,8 @@ struct TickHead {
   uint kept_back_high;
 };
 
-/// The rules of a material, as the tick's slope rule wants them.
+/// The rules of a material, as the tick's slope rule wants them. No arrays: those of uniform blocks are laid out
+/// otherwise than C++ does.
 struct MaterialEntry {
   int slope_threshold;     // drift: DriftNumbers::rest
   int diagonal_threshold;  // drift: DriftNumbers::inverse
@@ -123,7 +124,8 @@ struct MaterialEntry {
   int compression;         // from here on as in MaterialRules
   int compaction_limit;
   int friction_inverse;
-  int reserved[2];
+  int reserved_a;
+  int reserved_b;
 };
 
 /// An active tile.
