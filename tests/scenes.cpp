@@ -169,7 +169,10 @@ Parameters randomParameters(std::uint32_t seed, int material_count) {
   }
   p.drift_weights = DriftWeights(oneOf({0, 1, 2, 2}));
   p.drift_step_q16 = oneOf({1, kOneQ16 / 20, kOneQ16 / 4, kOneQ16, 10 * kOneQ16});
-  while (sweepsOf(p) > 40) p.drift_step_q16 /= 2;
+  Parameters drifting = p;  // as whoever changes the rule needs it, too
+  drifting.slopes = SlopeRule::drift;
+  while (sweepsOf(drifting) > 40) drifting.drift_step_q16 /= 2;
+  p.drift_step_q16 = drifting.drift_step_q16;
   p.obstacle_threshold_q = oneOf({0, 1, 50, 1500});
   p.penetration_divider_q = oneOf({1, 50, 1000});
   p.spread_cells = oneOf({1, 3, 16, kSpreadCellsLimit});
