@@ -196,6 +196,31 @@ TEST(Drift, BySlopeAPileComesToRestAtItsThresholdExactly) {
   }
 }
 
+TEST(Drift, BySlopeWhatSleepsIsAtRest) {
+  Ground ground{"pile", 47, 45, 1000000, Cells(47 * 45, 0), 700};
+  ground.heights[22 * 47 + 23] = 90000;
+  ScenePack pack = driftPack(ground);
+  addBody(pack, boxMesh(200, 200, 200), 26500, 22500, 10);  // its prick wakes the tile
+  const World world(std::move(pack));
+  Simulation simulation = world.simulate();
+  int ticks = 0;
+  for (; ticks < 1000; ++ticks) {
+    const auto result =
+        simulation.step(std::vector{moved(simulation.state().poses[0], 0, 0, ticks == 1 ? 1 << 28 : 0)});
+    ASSERT_TRUE(result) << result.error();
+    if (result->effect.active_cells == 0) break;
+  }
+  EXPECT_LT(ticks, 300);
+  int steepest = 0;
+  for (int y = 0; y < 44; ++y)
+    for (int x = 0; x < 46; ++x) {
+      const int here = heightOf(simulation.state(), x, y);
+      steepest = std::max({steepest, std::abs(here - heightOf(simulation.state(), x + 1, y)),
+                           std::abs(here - heightOf(simulation.state(), x, y + 1))});
+    }
+  EXPECT_EQ(steepest, 700);
+}
+
 TEST(Drift, UnweightedEverythingLevels) {
   Ground ground{"step", 12, 9, 100000, {}};
   for (int i = 0; i < 12 * 9; ++i) ground.heights.push_back(i % 12 < 6 ? 3000 : 0);

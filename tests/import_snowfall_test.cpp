@@ -1,5 +1,6 @@
 // Snowfalls, forces and sizes of scene files.
 #include <algorithm>
+#include <cmath>
 
 #include "server/import/importer.h"
 #include "tests/import_fixture.h"
@@ -159,6 +160,45 @@ force_n = 500
   const auto noted = import(body + "size = [1, 0.5]\nsize_s = [0.51, 2]\n");
   ASSERT_TRUE(noted) << noted.error();
   EXPECT_TRUE(anyContains(noted->notes, "body[0].size_s: 0.51 s rounded to tick 31"));
+}
+
+TEST(MaterialScenes, AreWhatTheySay) {
+  const auto load = [](const std::string& name) {
+    auto imported = importScene(std::string(SPOOR_SCENES_DIR) + "/" + name + ".toml");
+    EXPECT_TRUE(imported) << imported.error();
+    EXPECT_EQ(imported->pack.name, name);
+    return imported ? std::move(imported->pack) : ScenePack{};
+  };
+  // Gilardi et al., figure 4: 1/zeta, angle of repose and D; all else is the same.
+  const struct {
+    const char* name;
+    double friction_inverse, repose, diffusion;
+  } papers[] = {{"mud", 6e-4, 0.4, 0.25}, {"pebbles", 3e-4, 1 / 3.0, 0.9}, {"sand", 4e-4, 0.25, 1}};
+  const ScenePack first = load("drift_mud");
+  for (const auto& paper : papers) {
+    ScenePack pack = load("drift_" + std::string(paper.name));
+    EXPECT_EQ(pack.width_cells, 512);
+    EXPECT_EQ(pack.height_cells, 512);
+    EXPECT_EQ(pack.parameters.slopes, SlopeRule::drift);
+    EXPECT_LT(pack.parameters.drift_step_q16, 0.3 * kOneQ16);
+    const MaterialRules& rules = pack.parameters.materials[0];
+    EXPECT_EQ(pack.materials[0].name, paper.name);
+    EXPECT_EQ(rules.friction_inverse_q32, std::llround(paper.friction_inverse * 4294967296.0));
+    EXPECT_EQ(rules.repose_q16, std::lround(paper.repose * 2 * kOneQ16));
+    EXPECT_EQ(rules.diffusion_q16, std::lround(paper.diffusion * kOneQ16));
+    EXPECT_GT(pack.bodies[0].force_n, 0);
+    pack.name = first.name;
+    pack.materials = first.materials;
+    pack.parameters.materials = first.parameters.materials;
+    EXPECT_EQ(encodePack(pack), encodePack(first)) << paper.name << " differs in more than its material";
+  }
+  const ScenePack materials = load("materials");
+  EXPECT_EQ(materials.materials.size(), 3u);
+  EXPECT_EQ(materials.material_map.image.material.size(), 64u * 64u);
+  EXPECT_EQ(load("snowfall").snowfalls.size(), 2u);
+  const ScenePack growing = load("growing");
+  EXPECT_LT(growing.bodies[0].first_scale_q16, growing.bodies[0].last_scale_q16);
+  EXPECT_GT(growing.bodies[1].first_scale_q16, growing.bodies[1].last_scale_q16);
 }
 
 }  // namespace

@@ -242,7 +242,7 @@ std::int32_t groundBeneath(const WorldState& state, const BaseTerrain& base, con
 }
 
 // 10^4 ticks; SPOOR_SOAK_TICKS says another number (./test --soak: 10^6).
-TEST(SnowSoak, TheLedgerIsEvenAtEveryTickOfADriveThroughSnow) {
+TEST(SnowSoak, TheLedgerIsEvenAtEveryTickOfADriveThroughSnowOnNative) {
   const char* asked = std::getenv("SPOOR_SOAK_TICKS");
   const int tick_count = asked == nullptr ? 10000 : std::atoi(asked);
   ASSERT_GT(tick_count, 0);

@@ -135,10 +135,11 @@ void readDemBase(TableReader& base, const SceneErrors& errors, WorldSize size, T
 /// Sweeps of drift are split where they are long; says which key asks for too many.
 void checkParameters(TableReader& thesis, const Parameters& parameters) {
   if (sweepsOf(parameters) <= kIterationsLimit) return;
-  thesis.wrong(thesis.has("driftStep") ? "driftStep" : "slopes",
-               fmt::format("{} sweeps a tick of {} steps each (so that diffusion * driftStep is 1/8 at most in each) are {}; "
-                           "the limit is {}",
-                           parameters.sweeps_per_tick, driftSteps(parameters), sweepsOf(parameters), kIterationsLimit));
+  thesis.wrong(
+      thesis.has("driftStep") ? "driftStep" : "slopes",
+      fmt::format("{} sweeps a tick of {} steps each (so that diffusion * driftStep is 1/8 at most in each) are {}; "
+                  "the limit is {}",
+                  parameters.sweeps_per_tick, driftSteps(parameters), sweepsOf(parameters), kIterationsLimit));
 }
 
 /// Reads all tables; on an error, which SceneErrors holds, the draft is left half made.

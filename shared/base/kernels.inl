@@ -100,6 +100,12 @@ void craterRow(const rules::CraterShape& shape, int dx, int step, int dy, int n,
   craterZone<false>(shape, dx, step, dy, end, outer_end, displacement);
 }
 
+void snowRow(rules::uint seed, int x, int step, int y, int n, const rules::SnowDepth& fallen,
+             int32_t* __restrict depth) {
+  const rules::SnowDepth own = fallen;
+  for (int i = 0; i < n; ++i) depth[i] += rules::snowOn(seed, x + i * step, y, own);
+}
+
 void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
   for (int i = 0; i < n; ++i)
     underside[i] =
@@ -355,6 +361,7 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            lowest,
                                                            highest,
                                                            craterRow,
+                                                           snowRow,
                                                            lowerAlong,
                                                            hideAbove,
                                                            overlap,

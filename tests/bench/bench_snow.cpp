@@ -50,19 +50,23 @@ void measureTicks(const Settings& settings, const char* name, Reached reached, i
   const std::int32_t ticks = std::int32_t(settings.tick_count);
   std::vector<double> times;
   std::int64_t active = 0;
+  std::size_t live_before = 0;
   for (std::int32_t tick = 1; tick <= 400 + ticks; ++tick) {
     const auto start = std::chrono::steady_clock::now();
     auto result = simulation.step({});
     if (!result) throw std::runtime_error(result.error());
     if (result->ledger.error() != 0) report.faults.push_back(std::string("snow, ") + name + ": the ledger is off");
-    if (tick <= 400) continue;
+    if (tick <= 400) {
+      live_before = simulation.state().tiles.size();
+      continue;
+    }
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     active += result->effect.active_cells / rules::kTileCells;
   }
   double sum = 0;
   for (const double time : times) sum += time;
   const auto live = simulation.state().tiles.size();
-  if (live != std::size_t(side_tiles) * std::size_t(side_tiles) && reached != Reached::cones)
+  if (live != live_before && reached != Reached::cones)
     report.faults.push_back(std::string("snow, ") + name + ": tiles became live by themselves");
   std::printf("  %-34s %-8s live tiles %6zu, active %8.2f a tick; mean %8.4f ms, median %8.4f, 99th %8.4f\n", name,
               snows ? "snow" : "no snow", live, double(active) / double(times.size()), sum / double(times.size()),
