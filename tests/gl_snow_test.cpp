@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "shared/world/tile_snow.h"
 #include "tests/gl_sessions.h"
@@ -119,55 +118,26 @@ TEST_P(GlSnow, FallsOnTilesThatASmallPoolGaveUp) {
   compareSessions(simulation, world, true, true);
 }
 
-/// Ticks of at most so many tiles, as Simulation runs them.
-struct Crowded {
-  explicit Crowded(const World& world) : state(initialState(world.id, world.base)) {}
-
-  void tick(const World& world, Backend& backend, const std::vector<Pose>& poses, std::size_t tile_limit) {
-    const std::int32_t number = state.tick + 1;
-    std::vector<TileCoordinate> in_snow, waiting;
-    for (const Tile* tile : tilesInSnow(state, number, SnowTiles::awake)) in_snow.push_back(tile->at);
-    const SnowOfTick snow(state, world.pack, number, SnowTiles::asleep);
-    backend.tilesChanged(snow.tiles());
-    auto plan = planTick(world.pack, bodyReaches(world.pack), state, poses, state.parameters, {}, tile_limit);
-    ASSERT_TRUE(plan) << plan.error();
-    std::ranges::set_difference(in_snow, plan->active, std::back_inserter(waiting));
-    plan->in_snow = in_snow;
-    ASSERT_TRUE(backend.submit(std::move(*plan), world.base, state));
-    auto effect = backend.settle(state);
-    ASSERT_TRUE(effect) << effect.error();
-    std::vector<Tile*> changed;
-    for (const TileCoordinate at : waiting) {
-      changed.push_back(state.tiles.find(at));
-      snowOnTile(*changed.back(), world.pack, number, state);
-    }
-    backend.tilesChanged(changed);
-    waited += int(waiting.size());
-    state.tick = number;
-    state.previous_poses = std::exchange(state.poses, poses);
-    ASSERT_TRUE(backend.collect(state, effect->changes));
-    ASSERT_EQ(state.ledger.error(), 0);
-  }
-
-  WorldState state;
-  int waited = 0;  // tiles that took snow while they waited
-};
-
 TEST_P(GlSnow, FallsOnTilesThatWait) {
   ScenePack pack = snowyPack(3000);
   for (Snowfall& snowfall : pack.snowfalls) snowfall.rate_q32 = std::int64_t(400) << 32;  // most tiles never rest
   const World world(std::move(pack));
-  const auto backend = borrowBackend(GetParam()), native_backend = makeNativeBackend();
-  backend->forget();
-  Crowded crowded(world), native(world);
-  for (const auto& poses : inTurns(world)) {
-    const std::size_t limit = native.state.tick == 0 ? 12 : 7;
-    ASSERT_NO_FATAL_FAILURE(native.tick(world, *native_backend, poses, limit));
-    ASSERT_NO_FATAL_FAILURE(crowded.tick(world, *backend, poses, limit));
-    ASSERT_EQ(stateHash(crowded.state), stateHash(native.state)) << "tick " << native.state.tick;
+  constexpr std::size_t kLimit = 7;
+  Simulation simulation(world.base, initialState(world.id, world.base), borrowBackend(GetParam()), kLimit);
+  Simulation native(world.base, initialState(world.id, world.base), makeNativeBackend(), kLimit);
+  const auto ticks = inTurns(world);
+  ASSERT_TRUE(simulation.begin(ticks[0]));
+  std::size_t waiting = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (i + 1 < ticks.size()) {
+      ASSERT_TRUE(simulation.begin(ticks[i + 1]));
+    }
+    const auto expected = native.step(ticks[i]);
+    ASSERT_NO_FATAL_FAILURE(compareResults(simulation.finish(), expected));
+    waiting += expected->waiting_tiles;
   }
-  EXPECT_TRUE(recount(crowded.state));
-  EXPECT_GT(native.waited, 2);
+  EXPECT_TRUE(recount(simulation.state()));
+  EXPECT_GT(waiting, 40u);
 }
 
 INSTANTIATE_TEST_SUITE_P(On, GlSnow, ::testing::ValuesIn(glCases()), caseName);
