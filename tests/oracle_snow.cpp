@@ -86,8 +86,15 @@ void Oracle::addSnow(std::int32_t tick) {
         std::int32_t& layers = snowfalls_[n].layers[i];
         while ((std::int64_t(layers) << 32) + orderOf(snowfall, x, y, layers) < ticks * snowfall.rate_q32) {
           ++layers;
+          if (isLive(tile)) {
+            // A unit, one more below the undisturbed ground, none above it.
+            const std::int64_t level =
+                std::min<std::int64_t>(std::int64_t(base_height_[i]) + snow_[i], rules::kHeightLimit);
+            const int gained = level > world_.height[i] ? 2 : level < world_.height[i] ? 0 : 1;
+            for (int unit = 0; unit < gained && world_.height[i] < rules::kHeightLimit; ++unit)
+              ++world_.height[i], ++event_budget_;
+          }
           ++snow_[i];
-          if (isLive(tile) && world_.height[i] < rules::kHeightLimit) ++world_.height[i], ++event_budget_;
         }
       }
   }

@@ -321,7 +321,8 @@ RULE int probeSnow(int seed) {
   int x = drawn(seed, 394, 0, 1 << 24), y = drawn(seed, 395, 0, 1 << 24);
   int fallen = snowOn(snow_seed, x, y, depth);
   int sum = folded(folded(seed, snowFlake(snow_seed, x, y, depth)), fallen);
-  return folded(sum, snowGround(drawn(seed, 396, -kHeightLimit, kHeightLimit), fallen));
+  return folded(sum, snowGround(drawn(seed, 396, -kHeightLimit, kHeightLimit),
+                                drawn(seed, 397, -kHeightLimit, kHeightLimit), fallen));
 }
 
 /// Result number `which` (0 .. kProbeCount - 1) for a seed.

@@ -216,13 +216,6 @@ TEST(SnowSession, ATrailIsSnowedIn) {
   for (int tick = 0; tick < 60; ++tick) ASSERT_TRUE(simulation.step(simulation.state().poses));
   const int before = rutDepth(simulation.state());
   ASSERT_GT(before, 500);
-  // It falls into the rut, so to say: drift takes what lies steep down into it, and slopes of 700 become 100.
-  Parameters gentle = world.pack.parameters;
-  gentle.materials[0].slope_threshold_q = 50;
-  gentle.materials[0].diagonal_threshold_q = 70;
-  const std::uint64_t at_rest = simulation.state().tiles_hash;
-  ASSERT_TRUE(simulation.step(simulation.state().poses, gentle));
-  EXPECT_EQ(simulation.state().tiles_hash, at_rest) << "new parameters wake nothing by themselves";
   const Snowfall snowfall = everywhere(world.pack, 2 * kUnit, simulation.state().tick + 1);
   ASSERT_TRUE(simulation.step(simulation.state().poses, {}, {}, {&snowfall, 1}));
   int depth = before;
@@ -231,8 +224,9 @@ TEST(SnowSession, ATrailIsSnowedIn) {
     ASSERT_EQ(simulation.state().ledger.error(), 0);
   }
   depth = rutDepth(simulation.state());
-  EXPECT_LT(depth, before / 2);
-  EXPECT_GT(heightOf(simulation.state(), 5, 5), 300) << "and all has risen";
+  EXPECT_LE(depth, before - 350) << "by what fell, about";
+  EXPECT_GE(depth, before - 420);
+  EXPECT_GT(heightOf(simulation.state(), 5, 5), 350) << "and all has risen";
 }
 
 std::int32_t groundBeneath(const WorldState& state, const BaseTerrain& base, const Pose& pose) {

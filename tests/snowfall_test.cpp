@@ -105,7 +105,7 @@ TEST(Snowfall, ATileThatTakesItBeatByBeatEqualsOneMadeLate) {
     int beats = 0;
     for (std::int32_t tick = 1; tick <= 130; ++tick) {
       if (snowDue(at, snowfalls, tick)) {
-        gained += addSnow(pack, at, snowfalls, tick, kept->height());
+        gained += addSnow(pack, at, *kept->bedrock, snowfalls, tick, kept->height());
         ++beats;
       }
       const auto fresh = makeTile(at, {&base, nullptr, snowfalls, tick}, tick);
@@ -174,13 +174,34 @@ TEST(Snowfall, NewOnesMayNotBeginEarlierOrBeTooMany) {
   EXPECT_NE(validateNewSnowfalls(pack, snowfalls, 7, 5).error().find("snowfall 7: rate: "), std::string::npos);
 }
 
+TEST(Snowfall, FillsWhatLiesBelowTheUndisturbedGroundAndLeavesWhatStandsOutOfIt) {
+  ScenePack pack = flatPack(64, 64);
+  const Snowfall snowfalls[] = {falling(pack, 10 * kUnit, 1, 64)};  // 160 a beat
+  PlaneCells height{}, bedrock;
+  bedrock.fill(-pack.soil_depth_q);
+  height[1] = -100;
+  height[2] = -1000;
+  height[3] = 1000;
+  addSnow(pack, {0, 0}, bedrock, snowfalls, 16, height);
+  EXPECT_EQ(height[0], 160);
+  EXPECT_EQ(height[1], 160) << "level with the rest";
+  EXPECT_EQ(height[2], -1000 + 320);
+  EXPECT_EQ(height[3], 1000);
+  for (int tick = 32; tick <= 64; tick += rules::kSnowBeat) addSnow(pack, {0, 0}, bedrock, snowfalls, tick, height);
+  EXPECT_EQ(height[2], -1000 + 1280);
+  // The same at once.
+  EXPECT_EQ(height[2], rules::snowGround(-1000, 0, 640));
+  EXPECT_EQ(height[3], rules::snowGround(1000, 0, 640));
+}
+
 TEST(Snowfall, NothingRisesAboveTheHeightLimit) {
   ScenePack pack = flatPack(64, 64);
   const Snowfall snowfalls[] = {falling(pack, kSnowRateLimit, 1, 2048)};
-  PlaneCells height;
+  PlaneCells height, bedrock;
   height.fill(rules::kHeightLimit - 100);
   height[0] = 0;
-  const std::int64_t gained = addSnow(pack, {0, 0}, snowfalls, 16, height);
+  for (std::size_t i = 0; i < height.size(); ++i) bedrock[i] = height[i] - pack.soil_depth_q;
+  const std::int64_t gained = addSnow(pack, {0, 0}, bedrock, snowfalls, 16, height);
   EXPECT_EQ(height[1], rules::kHeightLimit);
   EXPECT_EQ(height[0], 16 * 4096);
   EXPECT_EQ(gained, 16 * 4096 + 100 * 4095);

@@ -335,7 +335,7 @@ class GlBackend final : public Backend {
     std::vector<std::int64_t> gained(snowed.size());
     pool_.forEach(int(snowed.size()), [&](int i, int) {
       Tile& tile = *tick.active.tiles[snowed[std::size_t(i)]];
-      gained[std::size_t(i)] = addSnow(*tick.pack, tile.at, state.snowfalls, tick.plan.tick, tile.height());
+      gained[std::size_t(i)] = addSnow(*tick.pack, tile.at, *tile.bedrock, state.snowfalls, tick.plan.tick, tile.height());
     });
     // The hash of the tick's end, as with craters.
     for (std::size_t i = 0; i < snowed.size(); ++i) {

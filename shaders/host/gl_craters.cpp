@@ -43,6 +43,7 @@ Status GlStages::snow(const TickTables& tick, const TilePool& pool) {
   bindTable(rules::kBindSnowTiles, tick.snow.tiles);
   bindTable(rules::kBindSnowLayers, tick.snow.layers);
   pool.height().bind(rules::kBindPoolHeight);
+  pool.bedrock().bind(rules::kBindPoolBedrock);
   use(**program);
   dispatch(tick.snow.groups);
   return {};

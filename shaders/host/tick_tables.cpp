@@ -17,7 +17,7 @@ static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 &
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
 static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::RoundLists) == 64);
 static_assert(sizeof(rules::TickHead) == 40 && sizeof(rules::CraterTile) == 40);
-static_assert(sizeof(rules::SnowTile) == 20 && sizeof(rules::SnowLayer) == 36 && sizeof(rules::Push) == 24);
+static_assert(sizeof(rules::SnowTile) == 24 && sizeof(rules::SnowLayer) == 36 && sizeof(rules::Push) == 24);
 static_assert(sizeof(rules::MaterialEntry) == 32 && rules::kMaterialsMost == kMaterialsLimit);
 
 /// Collects tables as bytes.
@@ -151,7 +151,7 @@ class TableMaker {
     for (std::size_t i = 0; i < events.snowed.size(); ++i) {
       if (events.snowed[i] == 0) continue;
       const TileCoordinate at = plan_.active[i];
-      rules::SnowTile& tile = tiles.emplace_back(slots[i], at.x * kSize, at.y * kSize, int(layers.size()), 0);
+      rules::SnowTile& tile = tiles.emplace_back(slots[i], at.x * kSize, at.y * kSize, pack_.soil_depth_q, int(layers.size()), 0);
       for (const Snowfall& snowfall : events.snowfalls) {
         if (!snowfall.area.meets(cellsOf(at))) continue;
         const rules::SnowDepth before = snowDepth(snowfall, at, plan_.tick - rules::kSnowBeat);
@@ -390,7 +390,7 @@ TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const 
   // No crater lifts a cell by more: rim, depth and noise as large as both.
   constexpr std::int32_t kRaiseMost = 3 * rules::kCraterHeightLimit;
   std::int64_t raised = tables.craters.tiles.empty() ? 0 : kRaiseMost;
-  if (tables.snow.groups.count > 0) raised += kSnowfallsLimit * ((kSnowRateLimit >> 32) * rules::kSnowBeat + 1);
+  if (tables.snow.groups.count > 0) raised += 2 * kSnowfallsLimit * ((kSnowRateLimit >> 32) * rules::kSnowBeat + 1);
   highest = std::int32_t(std::min<std::int64_t>(highest + raised, rules::kHeightLimit));
   tables.beneath = highest + plan.parameters.obstacle_threshold_q >= rules::kNoUnderside;
   for (const SubStepTables& step : tables.sub_steps) tables.beneath |= step.cover.count > 0;

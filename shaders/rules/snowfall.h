@@ -26,8 +26,14 @@ RULE int snowFlake(uint seed, int x, int y, SnowDepth depth) {
 /// What fell on a cell in all, height units.
 RULE int snowOn(uint seed, int x, int y, SnowDepth depth) { return depth.layers + snowFlake(seed, x, y, depth); }
 
-/// Height of a cell that takes `fallen` more.
-RULE int snowGround(int height, int fallen) { return minInt(height + fallen, kHeightLimit); }
+/// Height of a cell on which `fallen` comes down. What lies below the undisturbed ground, as a trail does, takes up to
+/// twice as much, and what stands out of it as much less, until both are level with it: wind fills hollows and blows
+/// ridges bare. Any division of the time into parts gives the same.
+/// @param level  of the undisturbed ground, the base and what had fallen on it before
+/// Ranges: height and level within +-kHeightLimit; fallen 0..2^29 + 64.
+RULE int snowGround(int height, int level, int fallen) {
+  return height + minInt(fallen + clampInt(level - height, -fallen, fallen), kHeightLimit - height);
+}
 
 SPOOR_RULES_END
 #endif

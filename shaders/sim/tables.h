@@ -156,6 +156,7 @@ struct SnowTile {
   int slot;  // in the pool
   int x0;    // its first cell
   int y0;
+  int soil_depth;
   int first_layer;  // SnowLayer: of each snowfall that it takes
   int end_layer;
 };

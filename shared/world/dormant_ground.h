@@ -7,8 +7,8 @@
 namespace spoor {
 
 /// Ground that nobody reached yet: the base with the craters of a set in it, never below bedrock, and on it what fell
-/// by a tick. Computed on demand; whoever looks changes nothing. Borrows all. Thread-safe while the set does not
-/// change.
+/// by a tick, as if all craters had been there before (rules/snowfall.h, snowGround). Computed on demand; whoever looks
+/// changes nothing. Borrows all. Thread-safe while the set does not change.
 struct DormantGround {
   const BaseTerrain* base = nullptr;
   const CraterSet* craters = nullptr;  // nullptr: none

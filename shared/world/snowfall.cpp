@@ -126,7 +126,8 @@ void fillSnow(const ScenePack& pack, std::span<const Snowfall> snowfalls, std::i
   }
 }
 
-std::int64_t addSnow(const ScenePack& pack, TileCoordinate at, std::span<const Snowfall> snowfalls, std::int32_t tick,
+std::int64_t addSnow(const ScenePack& pack, TileCoordinate at, std::span<const std::int32_t, rules::kTileCells> bedrock,
+                     std::span<const Snowfall> snowfalls, std::int32_t tick,
                      std::span<std::int32_t, rules::kTileCells> height) {
   std::array<std::int32_t, rules::kTileCells> before, after;
   const auto fill = [&](std::int32_t when, std::span<std::int32_t> depth) {
@@ -137,7 +138,9 @@ std::int64_t addSnow(const ScenePack& pack, TileCoordinate at, std::span<const S
   fill(tick, after);
   std::int64_t gained = 0;
   for (std::size_t i = 0; i < height.size(); ++i) {
-    const std::int32_t ground = rules::snowGround(height[i], after[i] - before[i]);
+    // Where nothing fell, as outside the world, the level does not matter.
+    const std::int32_t level = std::min(bedrock[i] + pack.soil_depth_q + before[i], rules::kHeightLimit);
+    const std::int32_t ground = rules::snowGround(height[i], level, after[i] - before[i]);
     gained += ground - height[i];
     height[i] = ground;
   }

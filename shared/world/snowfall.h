@@ -59,7 +59,8 @@ void fillSnow(const ScenePack& pack, std::span<const Snowfall> snowfalls, std::i
 
 /// Adds to a tile's heights what it takes in tick `tick` (snowDue). Nothing rises above the height limit.
 /// Returns what the cells gained, 0.1 mm * cells.
-std::int64_t addSnow(const ScenePack& pack, TileCoordinate at, std::span<const Snowfall> snowfalls, std::int32_t tick,
+std::int64_t addSnow(const ScenePack& pack, TileCoordinate at, std::span<const std::int32_t, rules::kTileCells> bedrock,
+                     std::span<const Snowfall> snowfalls, std::int32_t tick,
                      std::span<std::int32_t, rules::kTileCells> height);
 
 }  // namespace spoor

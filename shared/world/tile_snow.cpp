@@ -132,7 +132,7 @@ std::vector<Tile*> tilesInSnow(const WorldState& state, std::int32_t tick, SnowT
 }
 
 void snowOnTile(Tile& tile, const ScenePack& pack, std::int32_t tick, WorldState& state) {
-  const std::int64_t gained = addSnow(pack, tile.at, state.snowfalls, tick, tile.height());
+  const std::int64_t gained = addSnow(pack, tile.at, *tile.bedrock, state.snowfalls, tick, tile.height());
   if (gained != 0) commitSnow(tile, gained, tileHash(tile), state);
 }
 
