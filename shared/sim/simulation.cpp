@@ -139,7 +139,10 @@ Result<TickResult> Simulation::finish() {
   {
     StageTimer timer(result.effect.stage_ms, Stage::delta);
     if (Status status = backend_->collect(state_, result.effect.changes); !status) {
-      if (submitted_) state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+      if (submitted_) {
+        state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+        takeBack(*submitted_);
+      }
       return failure_.emplace(Error{status.error()});
     }
     result.update.tiles = encodeTiles(result.effect.changes);
