@@ -239,6 +239,7 @@ class GlBackend final : public Backend {
       clock.end(Stage::nearest);
       stages.displace(tables, i);
       clock.end(Stage::displace);
+      stages.push(tables, i);
       stages.relax(tables, i);
       clock.end(Stage::relax);
       tick.effect.domain_cells += tables.sub_steps[std::size_t(i)].domain_cells;

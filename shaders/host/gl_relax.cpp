@@ -6,12 +6,6 @@ namespace spoor {
 
 void GlStages::relax(const TickTables& tick, int i) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  const bool pushes = step.push_blocks.count > 0;
-  if (pushes) push(tick, step);
-  if (tick.parameters.displacement == Displacement::none) {
-    beginUndersides(tick, step);
-    findCeilings(tick, step);
-  }
   if (step.sweep_count == 0) return;
   bindMaterials(tick);
   const SlopeRule rule = tick.parameters.slopes;
@@ -19,7 +13,7 @@ void GlStages::relax(const TickTables& tick, int i) {
   for (int sweep = 0; sweep < step.sweep_count; ++sweep) {
     const int first_step = step.first_step + sweep * rules::kMatchingCount;
     if (rule == SlopeRule::drift)
-      sweepDrift(tick, step.first_step / rules::kMatchingCount + sweep, pushes);
+      sweepDrift(tick, step.first_step / rules::kMatchingCount + sweep, step.push_blocks.count > 0);
     else if (rule != SlopeRule::exchange)
       sweepSlopes(tick);
     else if (schedule_ == RelaxSchedule::fused)
@@ -81,8 +75,16 @@ void GlStages::sweepSlopes(const TickTables& tick) {
   current_ = nextHeights(tick, 1);
 }
 
+void GlStages::push(const TickTables& tick, int i) {
+  const SubStepTables& step = tick.sub_steps[std::size_t(i)];
+  if (step.push_blocks.count > 0) findPushes(tick, step);
+  if (tick.parameters.displacement != Displacement::none) return;
+  beginUndersides(tick, step);
+  findCeilings(tick, step);
+}
+
 /// What bodies do to the soil that they press on, in the push planes.
-void GlStages::push(const TickTables& tick, const SubStepTables& step) {
+void GlStages::findPushes(const TickTables& tick, const SubStepTables& step) {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // shaders wrote there, in an earlier sub-step
   const std::int64_t bytes = std::int64_t(tick.tile_index.size() * sizeof(PlaneCells));
   for (const GrowingBuffer* plane : {&push_x_, &push_y_})

@@ -43,7 +43,8 @@ class GlStages {
   void penetration(const TickTables& tick, int i);
   void nearest(const TickTables& tick, int i);
   void displace(const TickTables& tick, int i);
-  /// With what bodies push soil, for drift.
+  /// What bodies push before the sweeps. Where they displace nothing their undersides go away after that.
+  void push(const TickTables& tick, int i);
   void relax(const TickTables& tick, int i);
   /// Results, staging and the pool's new heights.
   void hash(const TickTables& tick, const TilePool& pool);
@@ -91,7 +92,7 @@ class GlStages {
   int nextHeights(const TickTables& tick, int turns) const;
   void clearNextHeights(const TickTables& tick);
   void sweepSlopes(const TickTables& tick);
-  void push(const TickTables& tick, const SubStepTables& step);
+  void findPushes(const TickTables& tick, const SubStepTables& step);
   void sweepDrift(const TickTables& tick, int sweep, bool pushes);
 
   RelaxSchedule schedule_;
