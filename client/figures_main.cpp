@@ -126,7 +126,8 @@ Status drawCraters(const Arguments& arguments, RenderSettings settings) {
   for (const CraterFigure& figure : kCraterFigures) {
     renderer.draw(scene.view(), craterView(scene.view(), std::uint32_t(figure.id), figure.look,
                                            settings.sun_azimuth_deg, double(settings.width_px) / settings.height_px));
-    const std::string name = fmt::format("crater_{}_{}", figure.name, arguments.picture.ground);
+    const bool own = settings.ground == Ground::scene;  // which is snow
+    const std::string name = fmt::format("crater_{}_{}", figure.name, own ? "snow" : arguments.picture.ground);
     if (const Status written = writePicture(renderer, arguments, name); !written) return written;
   }
   return {};
