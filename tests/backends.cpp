@@ -42,6 +42,7 @@ class BorrowedBackend final : public Backend {
   Status collect(WorldState& state, std::vector<TileChange>& changes) override {
     return backend_->collect(state, changes);
   }
+  void tilesChanged(std::span<Tile* const> tiles) override { backend_->tilesChanged(tiles); }
   void forget() override { backend_->forget(); }
   BackendMemory memory() const override { return backend_->memory(); }
 

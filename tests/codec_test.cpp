@@ -98,10 +98,10 @@ TEST_F(Codec, DifferencesOfEveryWidthSurvive) {
 TEST_F(Codec, TheBoxIsTheSmallestThatHoldsTheChange) {
   const auto tile = makeTile({0, 0}, {&world_.base}, 4);
   const PlaneCells before = tile->height();
-  EXPECT_EQ(differenceOf(*tile, before, nullptr, 2).width, 0);
+  EXPECT_EQ(differenceOf(*tile, planesWith(*tile, before), 2).width, 0);
   tile->height()[std::size_t(5 * 64 + 9)] += 3;
   tile->height()[std::size_t(7 * 64 + 8)] -= 1;
-  const TileChange change = differenceOf(*tile, before, nullptr, 2);
+  const TileChange change = differenceOf(*tile, planesWith(*tile, before), 2);
   EXPECT_EQ(std::tuple(int(change.x), int(change.y), int(change.width), int(change.height)), std::tuple(8, 5, 2, 3));
   EXPECT_EQ(change.difference, (std::vector<std::int32_t>{0, 3, 0, 0, -1, 0}));
   EXPECT_EQ(std::pair(change.base_version, change.new_version), std::pair(2, 4));
@@ -114,8 +114,8 @@ TEST_F(Codec, HeightsBelowBedrockAndOutsideTheWorldAreRefusedWhateverTheirHash) 
     const PlaneCells before = tile->height();
     tile->height()[std::size_t(cell)] += change_q;
     tile->hash = tileHash(*tile);
-    const TileChange change = differenceOf(*tile, before, nullptr, kDormantVersion);
-    EXPECT_FALSE(applyTiles(mirror_, world_.base, std::span(&change, 1))) << why;
+    const TileChange change = differenceOf(*tile, planesWith(*tile, before), kDormantVersion);
+    EXPECT_FALSE(applyTiles(mirror_, world_.base, std::span(&change, 1), 1)) << why;
     EXPECT_EQ(mirror_.tiles.size(), 0u);
   }
 }
@@ -173,7 +173,7 @@ TEST_F(Codec, AWrongChangeIsRefusedAndLeavesTheStateUntouched) {
   const auto isRefused = [&](auto change) {
     auto changes = next.effect.changes;
     change(changes.back());  // the last, so that all before it have been checked and found good
-    const Status status = applyTiles(mirror_, world_.base, changes);
+    const Status status = applyTiles(mirror_, world_.base, changes, mirror_.tick + 1);
     const bool untouched = bytesOf(mirror_, world_.base) == before;
     const TileCoordinate at = changes.back().at;
     const std::string name = "tile (" + std::to_string(at.x) + ", " + std::to_string(at.y) + ")";
@@ -228,7 +228,7 @@ TEST_F(Codec, DamagedChangesNeverHarmTheState) {
     for (auto left = 1 + engine() % 3; left > 0 && !bytes.empty(); --left)
       bytes[engine() % bytes.size()] ^= std::uint8_t(1 + engine() % 255);
     const auto changes = decodeTiles(bytes, world_.pack);
-    if (!changes || !applyTiles(mirror_, world_.base, *changes)) continue;
+    if (!changes || !applyTiles(mirror_, world_.base, *changes, mirror_.tick + 1)) continue;
     // Every tile's own hash was right, so its cells are: as after the good tick, or, where it is not named, as before.
     ++accepted;
     ASSERT_TRUE(recount(mirror_)) << "round " << round;

@@ -403,7 +403,7 @@ TEST_F(HostileCraters, InASnapshotAreRefused) {
   };
   ASSERT_EQ(said(after_), "");
   // Tick, hash and parameters; then the budgets of craters and events, the count and the records.
-  constexpr std::size_t kBudget = 4 + 8 + kParametersBytes, kCount = kBudget + 16, kRecords = kCount + 4;
+  constexpr std::size_t kBudget = 4 + 8 + parametersBytes(1), kCount = kBudget + 16, kRecords = kCount + 4;
   const auto changed = [this](std::size_t at, auto value) {
     std::vector<std::uint8_t> bytes = after_;
     std::memcpy(bytes.data() + at, &value, sizeof value);

@@ -48,7 +48,7 @@ std::size_t bytesAsTiles(const World& world, const Crater& crater) {
     for (std::int32_t x = 0; x < extent.x; ++x) {
       const auto tile = makeTile({x, y}, {&world.base, &set}, 1);
       world.base.fillHeights({x, y}, before);
-      TileChange change = differenceOf(*tile, before, nullptr, kDormantVersion);
+      TileChange change = differenceOf(*tile, planesWith(*tile, before), kDormantVersion);
       if (change.width > 0) changes.push_back(std::move(change));
     }
   return zstdCompress(encodeTiles(changes)).size();
@@ -61,7 +61,7 @@ TEST(CraterWire, ARecordIsAsLongForEverySizeAndShorterThanItsTiles) {
     const World world(craterPack(radius_q));
     const Crater crater = craterOf(world.pack, radius_q);
     ASSERT_TRUE(validateCrater(world.pack, crater));
-    TickUpdate update{1, 0, {}, encodeTiles({}), {}, {}};
+    TickUpdate update{1, 0, {}, encodeTiles({})};
     const std::size_t without = bytesOf(update);
     update.craters.push_back(crater);
     const std::size_t bytes = bytesOf(update) - without;

@@ -36,12 +36,14 @@ RandomWorld meeting(int ticks = kMeetingTicks) {
   return made;
 }
 
-using Craters = std::vector<std::vector<Crater>>;  // of every tick; empty: none in any
-
-Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& ticks, const Craters& craters = {}) {
+/// With the craters, snowfalls and new parameters of `random`, if any.
+Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& ticks,
+                const RandomWorld* random = nullptr) {
   Hashes hashes;
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    const auto result = simulation.step(ticks[i], {}, craters.empty() ? std::vector<Crater>() : craters[i]);
+    const auto result = random == nullptr ? simulation.step(ticks[i])
+                                          : simulation.step(ticks[i], random->changeAt(i), random->cratersAt(i),
+                                                            random->snowfallsAt(i));
     EXPECT_TRUE(result);
     hashes.push_back(result->update.state_hash);
   }
@@ -51,8 +53,8 @@ Hashes hashesOf(Simulation simulation, const std::vector<std::vector<Pose>>& tic
 }
 
 Hashes hashesOf(const World& world, const std::vector<std::vector<Pose>>& ticks, const NativeOptions& options,
-                const Craters& craters = {}) {
-  return hashesOf(world.simulate(options), ticks, craters);
+                const RandomWorld* random = nullptr) {
+  return hashesOf(world.simulate(options), ticks, random);
 }
 
 Hashes hashesOn(const BackendCase& backend_case, const World& world, const std::vector<std::vector<Pose>>& ticks) {
@@ -214,12 +216,12 @@ TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
     RandomWorld random = randomWorld(seed, 12);
     SCOPED_TRACE(random.description);
     const World world(random.pack);
-    const Hashes expected = hashesOf(world, random.ticks, {.thread_count = 1}, random.craters);
+    const Hashes expected = hashesOf(world, random.ticks, {.thread_count = 1}, &random);
     const auto sets = availableKernels();
     const NativeOptions threads{.thread_count = 3, .kernels = sets[seed % sets.size()]};
     const NativeOptions every_pair{.thread_count = 2, .kernels = sets[0], .skip_settled = false};
-    EXPECT_EQ(hashesOf(world, random.ticks, threads, random.craters), expected);
-    EXPECT_EQ(hashesOf(world, random.ticks, every_pair, random.craters), expected);
+    EXPECT_EQ(hashesOf(world, random.ticks, threads, &random), expected);
+    EXPECT_EQ(hashesOf(world, random.ticks, every_pair, &random), expected);
   }
 }
 

@@ -21,7 +21,7 @@ struct World20 {
   explicit World20(std::uint32_t seed) : random(randomWorld(seed, kTicksPerWorld)), world(random.pack) {
     Simulation native = world.simulate();
     for (std::size_t i = 0; i < random.ticks.size(); ++i)
-      expected.push_back(*native.step(random.ticks[i], random.changeAt(i), random.cratersAt(i)));
+      expected.push_back(*native.step(random.ticks[i], random.changeAt(i), random.cratersAt(i), random.snowfallsAt(i)));
   }
 
   /// What differs first, in words.
@@ -29,7 +29,8 @@ struct World20 {
     Simulation simulation = world.simulateOn(backend_case);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const std::string tick = "tick " + std::to_string(i + 1) + ": ";
-      const auto result = simulation.step(random.ticks[i], random.changeAt(i), random.cratersAt(i));
+      const auto result =
+          simulation.step(random.ticks[i], random.changeAt(i), random.cratersAt(i), random.snowfallsAt(i));
       if (!result) return tick + result.error();
       const TickResult& wanted = expected[i];
       if (result->update.state_hash != wanted.update.state_hash)

@@ -132,14 +132,17 @@ TEST_F(Thesis, APackWithParametersOutOfRangeIsRefused) {
   putParameters(block, scene->pack.parameters);
   const auto at = std::search(bytes.begin(), bytes.end(), block.bytes.begin(), block.bytes.end()) - bytes.begin();
   ASSERT_LT(std::size_t(at), bytes.size());
-  const char* const names[] = {"displacement", "nearest", "metric", "slopes", "active_areas"};
-  for (std::size_t i = 0; i < kParametersBytes; ++i) {
-    if (i >= 5 && (i - 5) % 4 != 3) continue;  // the highest byte of each number: negative, or too large
+  const char* const names[] = {"displacement", "nearest", "metric", "slopes", "drift_weights", "active_areas"};
+  const std::size_t count_at = 6 + 9 * 4;  // of the byte that counts materials
+  for (std::size_t i = 0; i < parametersBytes(1); ++i) {
+    if (i >= 6 && i < count_at && (i - 6) % 4 != 3) continue;
+    if (i > count_at && (i - count_at - 1) % 4 != 3)
+      continue;  // the highest byte of each number: negative, or too large
     std::vector<std::uint8_t> wrong = bytes;
     wrong[std::size_t(at) + i] = 0xff;
     const auto refused = decodePack(wrong);
     ASSERT_FALSE(refused) << i;
-    EXPECT_TRUE(contains(refused.error(), "pack: parameters: " + std::string(i < 5 ? names[i] : "")))
+    EXPECT_TRUE(contains(refused.error(), "pack: parameters: " + std::string(i < 6 ? names[i] : "")))
         << refused.error();
   }
 }

@@ -14,12 +14,28 @@
 #include "shaders/rules/nearest.h"
 #include "shaders/rules/penetration.h"
 #include "shaders/rules/raster.h"
+#include "shared/world/parameters.h"
 
 namespace spoor::test {
 namespace {
 
 using Cells = std::vector<std::int32_t>;
 constexpr int kLongestRow = 130;
+
+/// A row of cells that exchange soil, with what limits it or without.
+struct ExchangeRow {
+  Cells height, bedrock, underside, threshold;
+  bool beneath, thresholds;
+
+  ExchangeCells cells() {
+    return {height.data(), bedrock.data(), beneath ? underside.data() : nullptr,
+            thresholds ? threshold.data() : nullptr};
+  }
+  int room(std::size_t i) const {
+    return beneath ? rules::roomBeneath(height[i], underside[i], 50) : rules::kHeightLimit;
+  }
+  int thresholdOf(std::size_t i, int all) const { return thresholds ? threshold[i] : all; }
+};
 
 class EveryKernels : public ::testing::TestWithParam<const Kernels*> {
  protected:
@@ -41,6 +57,13 @@ class EveryKernels : public ::testing::TestWithParam<const Kernels*> {
     Cells bedrock;
     for (const int height : heights) bedrock.push_back(std::max(height - int(engine_() % 900), -rules::kHeightLimit));
     return bedrock;
+  }
+  ExchangeRow exchangeRow(int count, bool beneath, bool thresholds) {
+    ExchangeRow row{numbers(count, 2000), {}, numbers(count, 3000), {}, beneath, thresholds};
+    row.bedrock = below(row.height);
+    for (int i = 0; i < count; ++i)
+      row.threshold.push_back(engine_() % 4 == 0 ? kNeverSteep : 1 + int(engine_() % 900));
+    return row;
   }
 };
 
@@ -143,53 +166,46 @@ TEST_P(EveryKernels, NearestFreeRowOfEachColumn) {
 }
 
 /// What one pair becomes; true if any soil moved.
-bool exchangeByRule(int& a, int& b, int bedrock_a, int bedrock_b, int room_a, int room_b, int threshold) {
-  const int flow = rules::pairFlow(a, b, threshold, a - bedrock_a, b - bedrock_b, room_a, room_b);
-  a -= flow;
-  b += flow;
+bool exchangeByRule(ExchangeRow& a, std::size_t i, ExchangeRow& b, std::size_t j, int threshold) {
+  int &height_a = a.height[i], &height_b = b.height[j];
+  const int flow = rules::pairFlow(height_a, height_b, a.thresholdOf(i, threshold), b.thresholdOf(j, threshold),
+                                   height_a - a.bedrock[i], height_b - b.bedrock[j], a.room(i), b.room(j));
+  height_a -= flow;
+  height_b += flow;
   return flow != 0;
 }
 
 TEST_P(EveryKernels, ExchangesBetweenTwoRows) {
   for (int n = 0; n <= kLongestRow; ++n)
-    for (const bool beneath : {false, true}) {
-      Cells a = numbers(n, 2000), b = numbers(n, 2000), expected_a = a, expected_b = b;
-      const Cells rock_a = below(a), rock_b = below(b), under_a = numbers(n, 3000), under_b = numbers(n, 3000);
-      const int threshold = n % 3 == 0 ? 100000000 : 300;  // with the large one only cells at the ends move
-      bool moved = false;
-      for (std::size_t i = 0; i < std::size_t(n); ++i) {
-        const int room_a = beneath ? rules::roomBeneath(a[i], under_a[i], 50) : rules::kHeightLimit;
-        const int room_b = beneath ? rules::roomBeneath(b[i], under_b[i], 50) : rules::kHeightLimit;
-        moved |= exchangeByRule(expected_a[i], expected_b[i], rock_a[i], rock_b[i], room_a, room_b, threshold);
+    for (const bool beneath : {false, true})
+      for (const bool thresholds : {false, true}) {
+        ExchangeRow a = exchangeRow(n, beneath, thresholds), b = exchangeRow(n, beneath, thresholds);
+        ExchangeRow expected_a = a, expected_b = b;
+        const int threshold = n % 3 == 0 ? 100000000 : 300;  // with the large one only cells at the ends move
+        bool moved = false;
+        for (std::size_t i = 0; i < std::size_t(n); ++i)
+          moved |= exchangeByRule(expected_a, i, expected_b, i, threshold);
+        const bool reported = kernels_.exchangeRows(a.cells(), b.cells(), n, {threshold, 50});
+        ASSERT_EQ(a.height, expected_a.height) << n << (beneath ? " beneath" : "") << (thresholds ? " by cell" : "");
+        ASSERT_EQ(b.height, expected_b.height) << n << (beneath ? " beneath" : "") << (thresholds ? " by cell" : "");
+        ASSERT_EQ(reported, moved) << n << (beneath ? " beneath" : "") << (thresholds ? " by cell" : "");
       }
-      const bool reported = beneath
-                                ? kernels_.exchangeRowsBeneath(a.data(), b.data(), rock_a.data(), rock_b.data(),
-                                                               under_a.data(), under_b.data(), n, threshold, 50)
-                                : kernels_.exchangeRows(a.data(), b.data(), rock_a.data(), rock_b.data(), n, threshold);
-      ASSERT_EQ(a, expected_a) << n << (beneath ? " beneath" : "");
-      ASSERT_EQ(b, expected_b) << n << (beneath ? " beneath" : "");
-      ASSERT_EQ(reported, moved) << n << (beneath ? " beneath" : "");
-    }
 }
 
 TEST_P(EveryKernels, ExchangesWithinARow) {
   for (int pairs = 0; pairs <= rules::kTileSize / 2; ++pairs)
-    for (const bool beneath : {false, true}) {
-      // One more cell may be read, and none but the pairs' may change.
-      Cells cells = numbers(2 * pairs + 2, 2000), expected = cells;
-      const Cells rock = below(cells), under = numbers(2 * pairs + 2, 3000);
-      bool moved = false;
-      for (std::size_t i = 0; i < std::size_t(2 * pairs); i += 2) {
-        const int room_a = beneath ? rules::roomBeneath(cells[i], under[i], 50) : rules::kHeightLimit;
-        const int room_b = beneath ? rules::roomBeneath(cells[i + 1], under[i + 1], 50) : rules::kHeightLimit;
-        moved |= exchangeByRule(expected[i], expected[i + 1], rock[i], rock[i + 1], room_a, room_b, 300);
+    for (const bool beneath : {false, true})
+      for (const bool thresholds : {false, true}) {
+        // One more cell may be read, and none but the pairs' may change.
+        ExchangeRow row = exchangeRow(2 * pairs + 2, beneath, thresholds), expected = row;
+        bool moved = false;
+        for (std::size_t i = 0; i < std::size_t(2 * pairs); i += 2)
+          moved |= exchangeByRule(expected, i, expected, i + 1, 300);
+        const bool reported = kernels_.exchangeWithin(row.cells(), pairs, {300, 50});
+        ASSERT_EQ(row.height, expected.height)
+            << pairs << (beneath ? " beneath" : "") << (thresholds ? " by cell" : "");
+        ASSERT_EQ(reported, moved) << pairs << (beneath ? " beneath" : "") << (thresholds ? " by cell" : "");
       }
-      const bool reported =
-          beneath ? kernels_.exchangeWithinBeneath(cells.data(), rock.data(), under.data(), pairs, 300, 50)
-                  : kernels_.exchangeWithin(cells.data(), rock.data(), pairs, 300);
-      ASSERT_EQ(cells, expected) << pairs << (beneath ? " beneath" : "");
-      ASSERT_EQ(reported, moved) << pairs << (beneath ? " beneath" : "");
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Available, EveryKernels,

@@ -59,7 +59,7 @@ TileChange ScriptedSession::changeTile(TileCoordinate at, std::int32_t tick, std
   }
   tile->hash = tileHash(*tile);
   tile->wake_mask = tick % 3 == 0 ? 0 : kWakeSelf;
-  return differenceOf(*tile, before, nullptr, held == nullptr ? kDormantVersion : held->version_tick);
+  return differenceOf(*tile, planesWith(*tile, before), held == nullptr ? kDormantVersion : held->version_tick);
 }
 
 TickUpdate ScriptedSession::step() {
@@ -81,7 +81,7 @@ TickUpdate ScriptedSession::step() {
         tiles.push_back(changeTile({x, y}, tick, first_new_crater));
     }
   }
-  const Status status = applyTiles(state, base, tiles, first_new_crater);
+  const Status status = applyTiles(state, base, tiles, tick, first_new_crater);
   EXPECT_TRUE(status) << status.error();
   state.tick = tick;
   state.previous_poses = std::move(state.poses);

@@ -43,8 +43,15 @@ Oracle::Oracle(const BaseTerrain& base, const PackId& id)
   wake_.assign(tiles, 0);
   crater_sums_.assign(world_.height.size(), rules::craterSumOfNone());
   cratered_.assign(world_.height.size(), 0);
+  snow_.assign(world_.height.size(), 0);
+  snowed_.assign(tiles, 0);
+  for (const Snowfall& snowfall : base.pack().snowfalls) addSnowfall(snowfall);
   poses_ = initialState(id, base).poses;
   previous_poses_ = poses_;
+}
+
+void Oracle::addSnowfall(const Snowfall& snowfall) {
+  snowfalls_.push_back({snowfall, std::vector<std::int32_t>(world_.height.size(), 0)});
 }
 
 /// The cells that a mesh's box meets, and `margin` more on every side.
@@ -78,7 +85,8 @@ OracleBox Oracle::activeBox(int body_index, const Pose& pose) const {
   return boxAround(body_index, pose, searchMargin() + parameters_.active_margin_cells);
 }
 
-/// Sub-steps of at most a cell each: the body's shift, and what its farthest vertex moves by turning (spin left out).
+/// Sub-steps of at most a cell each: the body's shift, and what its farthest vertex moves by turning (spin left out)
+/// and by growing.
 int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const {
   const ScenePack& pack = base_->pack();
   std::int64_t farthest_square = 0;
@@ -93,7 +101,8 @@ int Oracle::subStepsFor(int body_index, const Pose& from, const Pose& to) const 
   constexpr std::int64_t kRadiansPerTurnQ32 = 411775;  // 2 pi / 65536, as all machines must round it
   const std::int64_t shift =
       std::max(std::abs(std::int64_t(to.x_q) - from.x_q), std::abs(std::int64_t(to.y_q) - from.y_q));
-  const std::int64_t farthest = shift + ((reach * turned * kRadiansPerTurnQ32) >> 32);
+  const std::int64_t grown = reach * std::abs(to.scale_q16 - from.scale_q16) / kFullScale;
+  const std::int64_t farthest = shift + ((reach * turned * kRadiansPerTurnQ32) >> 32) + grown;
   return int(std::clamp<std::int64_t>((farthest + pack.cell_q - 1) / pack.cell_q, 1, kMostSubSteps));
 }
 
@@ -188,14 +197,22 @@ void Oracle::setActive(const std::vector<std::uint8_t>& tiles) {
     live_[tileIndex(tile)] = 1;
     for (int y = tile.y * kSize; y < (tile.y + 1) * kSize; ++y)
       for (int x = tile.x * kSize; x < (tile.x + 1) * kSize; ++x)
-        crater_budget_ += world_.height[world_.at(x, y)] - base_height_[world_.at(x, y)];
+        if (world_.inside(x, y)) {
+          const std::size_t i = world_.at(x, y);
+          crater_budget_ += crateredBase(i) - base_height_[i];
+          event_budget_ += world_.height[i] - crateredBase(i);
+        }
   }
 }
 
 void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters,
-                  const std::vector<Crater>& craters) {
+                  const std::vector<Crater>& craters, const std::vector<Snowfall>& snowfalls) {
+  for (const Snowfall& snowfall : snowfalls) addSnowfall(snowfall);
+  addSnow(tick_ + 1);
+  wakeSnowed();  // by the parameters before
   parameters_ = parameters.value_or(parameters_);
   addCraters(craters);
+  setDormantHeights();
   std::vector<bool> takes_part(poses.size());
   sub_steps_ = 1;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -209,8 +226,8 @@ void Oracle::step(const std::vector<Pose>& poses, const std::optional<Parameters
   crowded_.clear();
   drawBodies(moves, poses_);
   for (int step = 0; step < sub_steps_ && !active_tiles_.empty(); ++step) {
-    const int sweeps = parameters_.sweeps_per_tick;
-    subStep(takes_part, posesOfSubStep(poses, step + 1), (step + 1) * sweeps / sub_steps_ - step * sweeps / sub_steps_);
+    const int first = step * sweepsPerTick() / sub_steps_, end = (step + 1) * sweepsPerTick() / sub_steps_;
+    subStep(takes_part, posesOfSubStep(poses, step), posesOfSubStep(poses, step + 1), first, end - first);
   }
   wake(before);
   previous_poses_ = poses_;
@@ -226,7 +243,23 @@ void Oracle::drawBodies(const std::vector<bool>& which, const std::vector<Pose>&
   oracleFrustum(world_, parameters_.frustum_height_q);
 }
 
-void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count) {
+int Oracle::sweepsPerTick() const {
+  return parameters_.sweeps_per_tick * (parameters_.slopes == SlopeRule::drift ? oracleDriftSteps(parameters_) : 1);
+}
+
+/// How the bodies that take part move in a sub-step.
+std::vector<OraclePush> Oracle::pushesOf(const std::vector<bool>& takes_part, const std::vector<Pose>& from,
+                                         const std::vector<Pose>& poses) const {
+  std::vector<OraclePush> pushes;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (takes_part[i])
+      pushes.push_back({std::int64_t(poses[i].x_q) - from[i].x_q, std::int64_t(poses[i].y_q) - from[i].y_q,
+                        base_->pack().bodies[i].force_n, boxAround(int(i), poses[i], 0)});
+  return pushes;
+}
+
+void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& from, const std::vector<Pose>& poses,
+                     int first_sweep, int sweep_count) {
   world_.underside_before = world_.underside;
   drawBodies(takes_part, poses);
   crowded_.clear();
@@ -234,12 +267,20 @@ void Oracle::subStep(const std::vector<bool>& takes_part, const std::vector<Pose
   penetrating_cells_ += std::ranges::count_if(overlap, [](std::int32_t value) { return value > 0; });
   for (const OracleBox& domain : searchDomains(takes_part, poses)) {
     oracleCompact(world_, overlap, parameters_, domain);
+    if (parameters_.displacement == Displacement::none) continue;
     const OracleKept kept = oracleDisplace(world_, overlap, parameters_, domain);
     kept_back_ += kept.sum;
     crowded_.insert(crowded_.end(), kept.cells.begin(), kept.cells.end());
   }
   std::ranges::sort(crowded_);
-  oracleRelax(world_, parameters_, sweep_count);
+  if (parameters_.slopes == SlopeRule::drift) {
+    const std::vector<OraclePush> pushes = pushesOf(takes_part, from, poses);
+    oraclePush(world_, parameters_, pushes, std::max(int(pushes.size()), 1));
+  }
+  const std::vector<std::int32_t> undersides = world_.underside;
+  if (parameters_.displacement == Displacement::none) std::ranges::fill(world_.underside, rules::kNoUnderside);
+  oracleRelax(world_, parameters_, sweep_count, tick_ + 1, first_sweep);
+  world_.underside = undersides;
 }
 
 /// The box, within the tile, of its cells that changed in either plane.
@@ -258,7 +299,7 @@ OracleBox Oracle::crateredBox(TileCoordinate tile) const {
 /// A changed tile keeps itself awake, and those neighbours whose common border lies within a tick's sweeps of the box
 /// of what changed. The box of craters counts as changed too.
 void Oracle::wake(const DenseWorld& before) {
-  const int reach = std::clamp(parameters_.sweeps_per_tick, 1, kSize);
+  const int reach = std::clamp(sweepsPerTick(), 1, kSize);
   for (const TileCoordinate tile : active_tiles_) {
     WakeMask mask = 0;
     for (const OracleBox& box : {changedBox(tile, before), crateredBox(tile)})
@@ -282,6 +323,7 @@ std::uint64_t Oracle::stateHash() const {
           const std::size_t i = world_.at(cell_x, cell_y);
           sum += cellHash(cell_x, cell_y, Plane::height, world_.height[i]);
           if (world_.compacted[i] != 0) sum += cellHash(cell_x, cell_y, Plane::compacted, world_.compacted[i]);
+          if (world_.material[i] != 0) sum += cellHash(cell_x, cell_y, Plane::material, world_.material[i]);
         }
       const std::uint64_t place = std::uint64_t(y) << 32 | std::uint64_t(x);
       sum += mix64(mix64(place ^ 0x7f4a7c159e3779b9u) + wakeMask({x, y}));
@@ -293,11 +335,21 @@ std::uint64_t Oracle::stateHash() const {
   putParameters(rest, parameters_);
   rest.put(std::uint32_t(records_.size()));
   rest.put(cratersHash());
+  rest.put(std::uint32_t(snowfalls_.size()));
+  for (const Fall& fall : snowfalls_) {
+    const Snowfall& record = fall.record;
+    for (const std::int32_t value : {record.area.x0, record.area.y0, record.area.x1, record.area.y1}) rest.put(value);
+    rest.put(record.rate_q32);
+    rest.put(record.first_tick);
+    rest.put(record.last_tick);
+    rest.put(record.seed);
+  }
   rest.put(std::uint32_t(poses_.size()));
   for (const auto* poses : {&poses_, &previous_poses_})
     for (const Pose& pose : *poses) {
       for (const std::int32_t value : {pose.x_q, pose.y_q, pose.z_q}) rest.put(value);
       for (const Turn turn : {pose.yaw, pose.pitch, pose.roll, pose.spin}) rest.put(turn);
+      rest.put(pose.scale_q16);
     }
   return sum + hashBytes(rest.bytes);
 }
@@ -305,6 +357,7 @@ std::uint64_t Oracle::stateHash() const {
 Ledger Oracle::ledger() const {
   Ledger ledger;
   ledger.craters = crater_budget_;
+  ledger.events = event_budget_;
   for (int y = 0; y < world_.rows; ++y)
     for (int x = 0; x < world_.columns; ++x) {
       if (!isLive({x / kSize, y / kSize})) continue;

@@ -16,14 +16,27 @@ namespace spoor::test {
 struct DenseWorld {
   int columns = 0, rows = 0;                             // of the arrays: whole tiles
   int inside_columns = 0, inside_rows = 0;               // of the world
+  int cell_q = 0;                                        // side of a cell, 0.1 mm
   std::vector<std::int32_t> height, bedrock, underside;  // [rows * columns], 0.1 mm
   std::vector<std::int32_t> underside_before;            // a sub-step earlier
   std::vector<std::int32_t> compacted;                   // [rows * columns] soil pressed together, 0.1 mm
+  std::vector<std::int32_t> material;                    // [rows * columns] number of the cell's material
+  std::vector<std::int32_t> push_x, push_y;              // [rows * columns] what forces move in a unit of time, 0.1 mm
   std::vector<std::uint8_t> active;                      // [rows * columns] 1: the cell's tile is active
 
   explicit DenseWorld(const BaseTerrain& base);
   std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(columns) + std::size_t(x); }
   bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < inside_columns && y < inside_rows; }
+  bool isActive(int x, int y) const { return inside(x, y) && active[at(x, y)] != 0; }
+  std::int64_t soil(std::size_t cell) const { return std::int64_t(height[cell]) - bedrock[cell]; }
+  /// What a cell can take: the gap beneath a body, where it is over the threshold.
+  std::int64_t room(std::size_t cell, int obstacle_threshold) const {
+    const std::int64_t gap = std::int64_t(underside[cell]) - height[cell];
+    return gap > obstacle_threshold ? gap : 0;
+  }
+  const MaterialRules& rulesOf(const Parameters& parameters, std::size_t cell) const {
+    return parameters.materials[std::size_t(material[cell])];
+  }
 };
 
 /// A mesh in one pose: points in subcells from cell (origin_x, origin_y), heights from z_q.
@@ -83,18 +96,40 @@ struct OracleKept {
 OracleKept oracleDisplace(DenseWorld& world, std::vector<std::int32_t> overlap, const Parameters& parameters,
                           const OracleBox& domain);
 
-/// Stage relax: sweeps over all edges between cells that are both active.
-void oracleRelax(DenseWorld& world, const Parameters& parameters, int sweep_count);
+/// Stage relax: sweeps over all edges between cells that are both active; those of rule `drift` from number
+/// `first_sweep` of a tick on, and by the world's pushes.
+void oracleRelax(DenseWorld& world, const Parameters& parameters, int sweep_count, std::int32_t tick = 1,
+                 int first_sweep = 0);
+
+/// The same, one sweep of rule `drift`.
+void oracleDrift(DenseWorld& world, const Parameters& parameters, std::int32_t tick, int sweep);
+
+/// Passes over the ground for each sweep of rule `drift`.
+int oracleDriftSteps(const Parameters& parameters);
+
+/// A body that pushes: how far it came in a sub-step, and the cells that its mesh can cover.
+struct OraclePush {
+  std::int64_t dx_q = 0, dy_q = 0;  // 0.1 mm
+  std::int32_t force_n = 0;
+  OracleBox box;
+};
+
+/// Before the sweeps of rule `drift`: the world's pushes.
+/// @param body_count  that take part, pushing or not
+void oraclePush(DenseWorld& world, const Parameters& parameters, const std::vector<OraclePush>& pushes, int body_count);
+
+/// Number of a cell's material by the pack's map.
+std::int32_t oracleMaterial(const BaseTerrain& base, int x, int y);
 
 /// A whole session, tick by tick, on a DenseWorld.
 class Oracle {
  public:
   explicit Oracle(const BaseTerrain& base, const PackId& id = {});
 
-  /// `poses` must be valid, and so must be `parameters`, which hold from this tick on, and `craters`, whose tick and id
-  /// are set here.
+  /// `poses` must be valid, and so must be `parameters`, which hold from this tick on, `craters`, whose tick and id are
+  /// set here, and `snowfalls`, which come with the tick.
   void step(const std::vector<Pose>& poses, const std::optional<Parameters>& parameters = {},
-            const std::vector<Crater>& craters = {});
+            const std::vector<Crater>& craters = {}, const std::vector<Snowfall>& snowfalls = {});
 
   std::uint64_t stateHash() const;
   Ledger ledger() const;
@@ -112,6 +147,7 @@ class Oracle {
   const Parameters& parameters() const { return parameters_; }
   /// All so far, with their ticks and ids.
   const std::vector<Crater>& craters() const { return records_; }
+  std::size_t snowfallCount() const { return snowfalls_.size(); }
   int subSteps() const { return sub_steps_; }
 
  private:
@@ -128,11 +164,21 @@ class Oracle {
   std::vector<Pose> posesOfSubStep(const std::vector<Pose>& poses, int step) const;
   std::vector<std::uint8_t> plan(const std::vector<Pose>& poses, std::vector<bool>& takes_part) const;
   void setActive(const std::vector<std::uint8_t>& tiles);
+  void addSnowfall(const Snowfall& snowfall);
+  void addSnow(std::int32_t tick);
+  WakeMask unstableMask(TileCoordinate tile, const std::vector<WakeMask>& wake) const;
+  void wakeSnowed();
   void addCraters(const std::vector<Crater>& craters);
+  std::int32_t crateredBase(std::size_t cell) const;
+  void setDormantHeights();
   void addToSums(const Crater& crater);
   void markLiveBox(const Crater& crater);
   std::uint64_t cratersHash() const;
-  void subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& poses, int sweep_count);
+  void subStep(const std::vector<bool>& takes_part, const std::vector<Pose>& from, const std::vector<Pose>& poses,
+               int first_sweep, int sweep_count);
+  std::vector<OraclePush> pushesOf(const std::vector<bool>& takes_part, const std::vector<Pose>& from,
+                                   const std::vector<Pose>& poses) const;
+  int sweepsPerTick() const;
   void drawBodies(const std::vector<bool>& which, const std::vector<Pose>& poses);
   OracleBox changedBox(TileCoordinate tile, const DenseWorld& before) const;
   OracleBox crateredBox(TileCoordinate tile) const;
@@ -150,6 +196,15 @@ class Oracle {
   std::vector<rules::CraterSum> crater_sums_;  // [rows * columns] of all records
   std::vector<std::uint8_t> cratered_;         // [rows * columns] 1: live, and in the box of a crater of this tick
   std::int64_t crater_budget_ = 0;             // what craters gave live tiles, 0.1 mm * cells
+  /// A snowfall, and how many of its layers each cell has a unit of.
+  struct Fall {
+    Snowfall record;
+    std::vector<std::int32_t> layers;  // [rows * columns]
+  };
+  std::vector<Fall> snowfalls_;
+  std::vector<std::int32_t> snow_;    // [rows * columns] of all snowfalls, up to its tile's last beat
+  std::vector<std::uint8_t> snowed_;  // [tiles] 1: live, and took snow in this tick
+  std::int64_t event_budget_ = 0;     // what snowfalls gave live tiles, 0.1 mm * cells
   std::vector<TileCoordinate> active_tiles_;
   std::vector<std::size_t> crowded_;
   std::vector<Pose> poses_, previous_poses_;

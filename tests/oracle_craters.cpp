@@ -6,8 +6,8 @@
 
 namespace spoor::test {
 
-/// Takes the craters of a tick in. Dormant ground is the base and what all craters together do to it; live ground takes
-/// the difference of what they do together with the new ones and without.
+/// Takes the craters of a tick in: live ground takes the difference of what they do together with the new ones and
+/// without.
 void Oracle::addCraters(const std::vector<Crater>& craters) {
   std::ranges::fill(cratered_, std::uint8_t(0));
   if (craters.empty()) return;
@@ -21,16 +21,29 @@ void Oracle::addCraters(const std::vector<Crater>& craters) {
   }
   for (int y = 0; y < world_.inside_rows; ++y)
     for (int x = 0; x < world_.inside_columns; ++x) {
+      if (!isLive({x / rules::kTileSize, y / rules::kTileSize})) continue;
       const std::size_t i = world_.at(x, y);
       std::int32_t& height = world_.height[i];
       const std::int32_t total = rules::craterTotal(crater_sums_[i]), total_before = rules::craterTotal(before[i]);
-      if (!isLive({x / rules::kTileSize, y / rules::kTileSize})) {
-        height = rules::craterGround(base_height_[i], world_.bedrock[i], total);
-        continue;
-      }
       crater_budget_ -= height;
       height = rules::craterGround(height, world_.bedrock[i], total - total_before);
       crater_budget_ += height;
+    }
+}
+
+/// The base and what all craters together do to it.
+std::int32_t Oracle::crateredBase(std::size_t cell) const {
+  return rules::craterGround(base_height_[cell], world_.bedrock[cell], rules::craterTotal(crater_sums_[cell]));
+}
+
+/// Dormant ground is that and what fell on it.
+void Oracle::setDormantHeights() {
+  for (int y = 0; y < world_.inside_rows; ++y)
+    for (int x = 0; x < world_.inside_columns; ++x) {
+      if (isLive({x / rules::kTileSize, y / rules::kTileSize})) continue;
+      const std::size_t i = world_.at(x, y);
+      world_.height[i] =
+          std::int32_t(std::min<std::int64_t>(std::int64_t(crateredBase(i)) + snow_[i], rules::kHeightLimit));
     }
 }
 

@@ -75,11 +75,13 @@ DenseWorld::DenseWorld(const BaseTerrain& base) {
   inside_columns = pack.width_cells;
   inside_rows = pack.height_cells;
   height.assign(std::size_t(columns) * std::size_t(rows), 0);
-  bedrock = compacted = height;
+  cell_q = pack.cell_q;
+  bedrock = compacted = material = push_x = push_y = height;
   for (int y = 0; y < inside_rows; ++y)
     for (int x = 0; x < inside_columns; ++x) {
       height[at(x, y)] = base.height(x, y);
       bedrock[at(x, y)] = height[at(x, y)] - pack.soil_depth_q;
+      material[at(x, y)] = oracleMaterial(base, x, y);
     }
   underside.assign(height.size(), rules::kNoUnderside);
   underside_before = underside;
@@ -179,14 +181,15 @@ void oracleCompact(DenseWorld& world, std::vector<std::int32_t>& overlap, const 
     for (int x = domain.x0; x < domain.x1; ++x) {
       const std::size_t i = world.at(x, y);
       if (overlap[i] <= 0) continue;
+      const MaterialRules& own = world.rulesOf(parameters, i);
       const std::int64_t compacted = world.compacted[i];
-      std::int64_t share_q16 = parameters.materials[0].compression_q16;
+      std::int64_t share_q16 = own.compression_q16;
       std::int64_t room = rules::kHeightLimit - compacted;
-      if (parameters.materials[0].compaction_limit_q16 > 0) {
+      if (own.compaction_limit_q16 > 0) {
         // All the soil that the column ever had, as far as it counts.
         const std::int64_t soil = std::min<std::int64_t>(std::int64_t(world.height[i]) - world.bedrock[i], kDeepSoil) +
                                   std::min<std::int64_t>(compacted, kDeepSoil);
-        const std::int64_t limit = soil * parameters.materials[0].compaction_limit_q16 / kOneQ16;
+        const std::int64_t limit = soil * own.compaction_limit_q16 / kOneQ16;
         room = std::max<std::int64_t>(limit - compacted, 0);
         share_q16 = limit == 0 ? 0 : share_q16 * room / limit;
       }

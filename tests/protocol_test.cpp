@@ -201,7 +201,7 @@ TEST(Parameters, AreOfTheOrderAndSizeThatTheProtocolStates) {
                           0, 0, 15, 0,  0, 0,  255, 255, 255, 127, 17, 0,  0, 0,  18, 0,  0, 0,  19,
                           0, 0, 0,  20, 0, 0,  0,   5,   0,   0,   0,  22, 0, 0,  0,  23, 0, 0,  0};
   EXPECT_EQ(writer.bytes, expected);
-  EXPECT_EQ(expected.size(), kParametersBytes);
+  EXPECT_EQ(expected.size(), parametersBytes(1));
 }
 
 TEST(Parameters, OutOfRangeAreRejected) {
@@ -246,14 +246,14 @@ TEST(Parameters, OfAWrongSizeAreRejected) {
   const auto at = std::search(raw->payload.begin(), raw->payload.end(), writer.bytes.begin(), writer.bytes.end());
   ASSERT_NE(at, raw->payload.end());
   std::uint8_t& length = *(at - 4);  // of the vector, its lowest byte
-  ASSERT_EQ(length, kParametersBytes);
-  for (const int wrong : {0, 1, int(kParametersBytes) - 1, int(kParametersBytes) + 1, 255}) {
+  ASSERT_EQ(length, parametersBytes(1));
+  for (const int wrong : {0, 1, int(parametersBytes(1)) - 1, int(parametersBytes(1)) + 1, 255}) {
     length = std::uint8_t(wrong);
     const auto decoded = decodeMessage(
         rawFrame(MessageKind::tick_update, 0, std::uint32_t(raw->payload.size()), raw->payload), Sender::server);
     ASSERT_FALSE(decoded) << wrong;
     // What reaches past the table's end is the verifier's.
-    const bool fits = wrong < int(kParametersBytes);
+    const bool fits = wrong < int(parametersBytes(1));
     EXPECT_TRUE(contains(decoded.error(), "parameters of a wrong size") ||
                 (!fits && contains(decoded.error(), "broken table")))
         << decoded.error();

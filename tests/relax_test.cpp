@@ -16,16 +16,16 @@ constexpr int kMuch = rules::kHeightLimit;
 class RelaxStage : public OnEveryBackend {};
 
 TEST(Relax, APairMovesHalfOfItsExcessRoundedUp) {
-  EXPECT_EQ(rules::pairFlow(1000, 0, 700, kMuch, kMuch, kMuch, kMuch), 150);
-  EXPECT_EQ(rules::pairFlow(1001, 0, 700, kMuch, kMuch, kMuch, kMuch), 151);
-  EXPECT_EQ(rules::pairFlow(0, 1001, 700, kMuch, kMuch, kMuch, kMuch), -151);
-  EXPECT_EQ(rules::pairFlow(700, 0, 700, kMuch, kMuch, kMuch, kMuch), 0);
-  EXPECT_EQ(rules::pairFlow(701, 0, 700, kMuch, kMuch, kMuch, kMuch), 1);
-  EXPECT_EQ(rules::pairFlow(1000, 0, 700, 40, kMuch, kMuch, kMuch), 40) << "no more than the giver's soil";
-  EXPECT_EQ(rules::pairFlow(1000, 0, 700, kMuch, kMuch, kMuch, 30), 30) << "no more than the taker's room";
-  EXPECT_EQ(rules::pairFlow(0, 1000, 700, kMuch, 40, kMuch, kMuch), -40);
-  EXPECT_EQ(rules::pairFlow(0, 1000, 700, kMuch, kMuch, 30, kMuch), -30);
-  EXPECT_EQ(rules::pairFlow(kMuch, -kMuch, 1, kMuch, 0, 0, kMuch), kMuch) << "the widest difference";
+  EXPECT_EQ(rules::pairFlow(1000, 0, 700, 700, kMuch, kMuch, kMuch, kMuch), 150);
+  EXPECT_EQ(rules::pairFlow(1001, 0, 700, 700, kMuch, kMuch, kMuch, kMuch), 151);
+  EXPECT_EQ(rules::pairFlow(0, 1001, 700, 700, kMuch, kMuch, kMuch, kMuch), -151);
+  EXPECT_EQ(rules::pairFlow(700, 0, 700, 700, kMuch, kMuch, kMuch, kMuch), 0);
+  EXPECT_EQ(rules::pairFlow(701, 0, 700, 700, kMuch, kMuch, kMuch, kMuch), 1);
+  EXPECT_EQ(rules::pairFlow(1000, 0, 700, 700, 40, kMuch, kMuch, kMuch), 40) << "no more than the giver's soil";
+  EXPECT_EQ(rules::pairFlow(1000, 0, 700, 700, kMuch, kMuch, kMuch, 30), 30) << "no more than the taker's room";
+  EXPECT_EQ(rules::pairFlow(0, 1000, 700, 700, kMuch, 40, kMuch, kMuch), -40);
+  EXPECT_EQ(rules::pairFlow(0, 1000, 700, 700, kMuch, kMuch, 30, kMuch), -30);
+  EXPECT_EQ(rules::pairFlow(kMuch, -kMuch, 1, 1, kMuch, 0, 0, kMuch), kMuch) << "the widest difference";
 }
 
 TEST(Relax, RoomBeneathABodyIsTheGapIfItIsOverTheThreshold) {

@@ -158,8 +158,9 @@ RULE int probeSlope(int seed, int height_a, int height_b) {
   int count = drawn(seed, 149, 0, 8);
   sum = folded(sum, slopeAmount(count * drawnAmount(seed, 150, kDifferenceMost), count, roughness, soil));
   sum = folded(sum, slopeFlow(soil, room));
-  return folded(sum, slopeFlux(height_a, height_b, threshold, roughness, soil, drawnAmount(seed, 152, 1073741823), room,
-                               drawnAmount(seed, 154, 1073741823)));
+  return folded(
+      sum, slopeFlux(height_a, height_b, threshold, drawnThreshold(seed, 156), roughness, drawnShare(seed, 159), soil,
+                     drawnAmount(seed, 152, 1073741823), room, drawnAmount(seed, 154, 1073741823)));
 }
 
 /// All 64 bits, without a division.
@@ -274,8 +275,8 @@ RULE int probeRule(int which, int seed) {
   if (which == 3) return int(cellMixLow(cellKey(height_a, height_b, seed & 3), small));
   if (which == 4) return int(cellMixHigh(cellKey(height_a, height_b, seed & 3), small));
   if (which == 5)
-    return pairFlow(height_a, height_b, threshold, small, drawn(seed, 64, 0, 5000), drawn(seed, 65, 0, kHeightLimit),
-                    drawn(seed, 66, 0, 500));
+    return pairFlow(height_a, height_b, threshold, drawn(seed, 59, 1, 2000), small, drawn(seed, 64, 0, 5000),
+                    drawn(seed, 65, 0, kHeightLimit), drawn(seed, 66, 0, 500));
   if (which == 6) return roomBeneath(height_a, height_b, threshold);
   if (which == 7)
     return cellOverlap(height_a, height_a - minInt(small, height_a + kHeightLimit), height_b,

@@ -50,7 +50,10 @@ class World {
 };
 
 /// Parameters of a seed: every method, and numbers at and between the ends of what makes a difference.
-Parameters randomParameters(std::uint32_t seed);
+Parameters randomParameters(std::uint32_t seed, int material_count = 1);
+
+/// Gives a pack several materials, mapped by an image or by rules over its base. Its parameters must be of as many.
+void addMaterials(ScenePack& pack, int count, std::uint32_t seed);
 
 /// All of them, in words and numbers.
 std::string describe(const Parameters& parameters);
@@ -60,21 +63,24 @@ std::string describe(const Parameters& parameters);
 Crater randomCrater(const ScenePack& pack, std::uint32_t seed, int reach_q);
 
 /// A small world of a seed: its size is a multiple of nothing, its ground, parameters and bodies are anything, and the
-/// bodies wander, turn, rise and fall, some faster than a cell a tick, some out of the world. In most of them craters
-/// appear: small and large, alone and many in a tick, some twice, some over the border, some under bodies.
+/// bodies wander, turn, rise, fall, shrink and grow, some faster than a cell a tick, some out of the world. In most of
+/// them craters appear: small and large, alone and many in a tick, some twice, some over the border, some under bodies.
+/// Every other one has several materials, and in most of them it snows.
 struct RandomWorld {
   ScenePack pack;
   std::vector<std::vector<Pose>> ticks;  // poses of every tick
   std::size_t change = SIZE_MAX;         // index of the tick from which on `changed` holds
   Parameters changed;
 
-  std::vector<std::vector<Crater>> craters;  // of every tick
+  std::vector<std::vector<Crater>> craters;      // of every tick
+  std::vector<std::vector<Snowfall>> snowfalls;  // the same; the pack may have some too
 
   /// What a tick is given besides its poses.
   std::optional<Parameters> changeAt(std::size_t tick) const {
     return tick == change ? std::optional(changed) : std::nullopt;
   }
   const std::vector<Crater>& cratersAt(std::size_t tick) const { return craters[tick]; }
+  const std::vector<Snowfall>& snowfallsAt(std::size_t tick) const { return snowfalls[tick]; }
 
   std::string description;
 };
@@ -85,6 +91,9 @@ RandomWorld randomWorld(std::uint32_t seed, int tick_count);
 
 /// The highest difference over what rests, between inside neighbours of live tiles that are both live (0: all rest).
 std::int64_t steepestExcess(const ScenePack& pack, const TileStore& tiles);
+
+/// What a tile would be with other heights, for differenceOf.
+TilePlanes planesWith(const Tile& tile, const PlaneCells& height);
 
 /// Height of a cell of a live tile.
 std::int32_t heightOf(const WorldState& state, int x, int y);

@@ -193,10 +193,15 @@ TEST(Slopes, FluxIsOddAndWithinAnEighthOfSoilAndRoom) {
     const int a = rules::clampInt(r.height(), -rules::kHeightLimit, rules::kHeightLimit);
     const int b = round % 2 == 0 ? rules::clampInt(r.height(), -rules::kHeightLimit, rules::kHeightLimit)
                                  : rules::clampInt(a + r.pick(-5000, 5000), -rules::kHeightLimit, rules::kHeightLimit);
-    const int threshold = r.threshold(), roughness = r.roughness();
+    const int threshold_a = r.threshold(), threshold_b = r.threshold();
+    const int roughness_a = r.roughness(), roughness_b = r.roughness();
+    const int threshold = a > b ? threshold_a : threshold_b, roughness = a > b ? roughness_a : roughness_b;
     const int soil_a = r.amount(), soil_b = r.amount(), room_a = r.amount(), room_b = r.amount();
-    const int flow = rules::slopeFlux(a, b, threshold, roughness, soil_a, soil_b, room_a, room_b);
-    ASSERT_EQ(rules::slopeFlux(b, a, threshold, roughness, soil_b, soil_a, room_b, room_a), -flow);
+    const int flow =
+        rules::slopeFlux(a, b, threshold_a, threshold_b, roughness_a, roughness_b, soil_a, soil_b, room_a, room_b);
+    ASSERT_EQ(
+        rules::slopeFlux(b, a, threshold_b, threshold_a, roughness_b, roughness_a, soil_b, soil_a, room_b, room_a),
+        -flow);
     const std::int64_t excess = std::max<std::int64_t>(std::abs(std::int64_t(a) - b) - threshold, 0);
     const std::int64_t expected =
         std::min({std::int64_t(__int128(excess) * roughness / 65536), std::int64_t(a > b ? soil_a : soil_b),

@@ -72,9 +72,9 @@ NativeStageRig::NativeStageRig(const World& made_world, int thread_count, const 
     : StageRig(made_world, std::move(active)),
       pool(thread_count),
       tiles(takeTiles(plan_, made_world.base, WorldState{}, pool)),
-      context{made_world.pack, plan_.parameters, set, pool, area},
+      context{made_world.pack, plan_.tick, plan_.parameters, set, pool, area},
       skip_settled_(skip_settled) {
-  area.gather(tiles.tiles, plan_.parameters.materials[0].compression_q16 > 0, pool);
+  area.gather(tiles.tiles, plan_.parameters, pool);
   area.clearUnderside(made_world.pack, pool);
   area.underside_before = area.underside;
   runDepth(context, {});

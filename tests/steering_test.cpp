@@ -150,6 +150,7 @@ class Withholding final : public Backend {
   Status collect(WorldState& state, std::vector<TileChange>& changes) override {
     return inner_->collect(state, changes);
   }
+  void tilesChanged(std::span<Tile* const> tiles) override { inner_->tilesChanged(tiles); }
   void forget() override { inner_->forget(); }
   BackendMemory memory() const override { return inner_->memory(); }
 

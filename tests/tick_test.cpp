@@ -12,7 +12,7 @@ namespace {
 void checkCells(const Oracle& oracle) {
   const DenseWorld& cells = oracle.world();
   for (std::size_t i = 0; i < cells.height.size(); ++i) ASSERT_GE(cells.height[i], cells.bedrock[i]) << "cell " << i;
-  if (oracle.activeTiles().empty()) return;
+  if (oracle.activeTiles().empty() || oracle.parameters().displacement == Displacement::none) return;
   const auto overlap = oracleOverlap(cells, oracle.parameters().obstacle_threshold_q);
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     const bool fine = overlap[i] <= 0 || std::ranges::binary_search(oracle.crowdedCells(), i);
@@ -25,7 +25,8 @@ void checkCounts(const TickEffect& effect, const Oracle& oracle) {
   ASSERT_EQ(effect.penetrating_cells, oracle.penetratingCells());
   ASSERT_EQ(effect.kept_back, oracle.keptBack());
   if (oracle.parameters().slopes == SlopeRule::exchange) return;  // backends leave out pairs that are settled
-  ASSERT_EQ(effect.pairs_visited, 4 * effect.active_cells * oracle.parameters().sweeps_per_tick);
+  const int edges = oracle.parameters().slopes == SlopeRule::drift ? 2 : 4;  // of each cell
+  ASSERT_EQ(effect.pairs_visited, edges * effect.active_cells * sweepsOf(oracle.parameters()));
 }
 
 void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
@@ -35,9 +36,10 @@ void checkWorld(const BackendCase& backend_case, std::uint32_t seed) {
   Simulation simulation = world.simulateOn(backend_case);
   Oracle oracle(world.base, world.id);
   for (std::size_t tick = 0; tick < random.ticks.size(); ++tick) {
-    const auto result = simulation.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick));
+    const auto result =
+        simulation.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick), random.snowfallsAt(tick));
     ASSERT_TRUE(result) << result.error();
-    oracle.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick));
+    oracle.step(random.ticks[tick], random.changeAt(tick), random.cratersAt(tick), random.snowfallsAt(tick));
     ASSERT_TRUE(sameState(simulation.state(), oracle)) << "tick " << result->update.tick;
     ASSERT_EQ(simulation.state().ledger.error(), 0) << "tick " << result->update.tick;
     ASSERT_NO_FATAL_FAILURE(checkCounts(result->effect, oracle));

@@ -17,7 +17,7 @@
 //   over each edge. Steps are short enough (driftSteps in parameters.h) that diffusion alone never asks for more over
 //   flat bedrock.
 // - Amounts are whole units. The fraction is rounded up or down in turn (driftDither), so that small steps lose nothing
-//   on the mean; what would not move by 1/256 of a unit stays.
+//   on the mean; what would not move by 1/256 of a unit stays, and so does a difference of a unit.
 #ifndef SPOOR_RULES_DRIFT_H
 #define SPOOR_RULES_DRIFT_H
 #include "exchange.h"
@@ -42,8 +42,8 @@ struct DriftStep {
 
 /// What its material says of a cell in a step.
 struct DriftNumbers {
-  int rest;      // height difference that rests where this is the higher cell, >= 1; by displacement: the angle of
-                 // repose as a share of a right angle in Q16
+  int rest;      // by slope: height difference that rests where this is the higher cell, >= 1; by displacement: the
+                 // angle of repose as a share of a right angle in Q16
   int rate;      // D * step in Q16, 0 .. 2^14
   uint inverse;  // by displacement: about 2^32 / (2^16 - rest)
 };
@@ -77,8 +77,9 @@ RULE int driftWeight(DriftStep step, int moved, int rest, uint inverse) {
 RULE int driftFlow(DriftStep step, DriftCell a, DriftCell b, int push, int dither) {
   int difference = clampInt(a.height - b.height, -kDriftMost, kDriftMost);
   bool by_displacement = step.weights == kDriftByDisplacement;
-  int resting = by_displacement ? 0 : difference < 0 ? b.rest : a.rest;
-  int excess = maxInt(absInt(difference) - resting, 0);
+  int height = absInt(difference);
+  int resting = difference < 0 ? b.rest : a.rest;
+  int excess = step.weights == kDriftBySlope ? maxInt(height - resting, 0) : height > 1 ? height : 0;
   int diffused = withSign(timesQ8(excess, (a.rate + b.rate) >> 1), difference);
   int pushed = withSign(timesQ8(minInt(absInt(push), kDriftMost), step.step), push);
   int moved = diffused + pushed;

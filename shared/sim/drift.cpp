@@ -50,7 +50,7 @@ DriftSweep driftSweep(const ScenePack& pack, const Parameters& parameters) {
     numbers.rate = std::min(std::int32_t((std::int64_t(own.diffusion_q16) * step.step + (1 << 15)) >> 16), 1 << 14);
     numbers.rest = rules::exchangeThreshold(step.weights == rules::kDriftBySlope ? own.slope_threshold_q : 1);
     if (!by_displacement) continue;
-    numbers.rest = std::int32_t((std::int64_t(own.repose_arc_q) << 16) / std::max(quarter_q, 1));
+    numbers.rest = own.repose_q16;
     numbers.inverse = 0xffffffffu / std::uint32_t(std::max(0x10000 - numbers.rest, 1));
   }
   return sweep;
@@ -94,7 +94,7 @@ void runPush(const NativeContext& context, const SubStep& sub_step) {
     }
   if (context.parameters.displacement == Displacement::none) {
     area.clearUnderside(context.pack, context.pool);
-    std::ranges::fill(area.lowest_underside, rules::kNoUnderside);
+    runDepth(context, {});  // of no body: the world's border stays closed
   }
 }
 

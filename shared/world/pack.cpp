@@ -314,11 +314,6 @@ Status validateParameters(const ScenePack& pack, const Parameters& parameters) {
   if (parameters.materials.size() != pack.materials.size())
     return Error{"parameters: of " + std::to_string(parameters.materials.size()) + " materials, the pack has " +
                  std::to_string(pack.materials.size())};
-  const std::int32_t quarter = quarterArc(pack.cell_q);
-  for (const MaterialRules& rules : parameters.materials)
-    if (rules.repose_arc_q >= quarter)
-      return Error{"parameters: repose_arc_q is " + std::to_string(rules.repose_arc_q) +
-                   ", not less than a right angle's, " + std::to_string(quarter)};
   const std::int64_t cells = std::int64_t(pack.width_cells) * pack.height_cells;
   if (parameters.active_areas == 0 && (pack.width_cells > kWholeWorldSideLimit ||
                                        pack.height_cells > kWholeWorldSideLimit || cells > kWholeWorldCellsLimit))

@@ -45,7 +45,7 @@ void visitMaterial(RulesType& r, Visit visit) {
   visit(r.roughness_q16, "roughness_q16", 0, kOneQ16);
   visit(r.diffusion_q16, "diffusion_q16", 0, kDiffusionLimit);
   visit(r.friction_inverse_q32, "friction_inverse_q32", 0, INT32_MAX);
-  visit(r.repose_arc_q, "repose_arc_q", 0, kLengthLimit);
+  visit(r.repose_q16, "repose_q16", 0, kReposeLimit);
 }
 
 /// How a field is stored: choices and flags in a byte, numbers in four.
@@ -92,8 +92,12 @@ bool anyCompression(const Parameters& parameters) {
 
 int driftSteps(const Parameters& parameters) {
   std::int64_t fastest_q16 = 0;
-  for (const MaterialRules& rules : parameters.materials)
-    fastest_q16 = std::max<std::int64_t>(fastest_q16, rules.diffusion_q16);
+  for (const MaterialRules& rules : parameters.materials) {
+    std::int64_t rate_q16 = rules.diffusion_q16;
+    if (parameters.drift_weights == DriftWeights::displacement)
+      rate_q16 = -floorDiv(-rate_q16 * (2 * kOneQ16 - rules.repose_q16), kOneQ16 - rules.repose_q16);
+    fastest_q16 = std::max(fastest_q16, rate_q16);
+  }
   const std::int64_t by_diffusion = -floorDiv(-4 * fastest_q16 * parameters.drift_step_q16, std::int64_t(1) << 32);
   const std::int64_t by_time = -floorDiv(-std::int64_t(parameters.drift_step_q16), std::int64_t(kOneQ16));
   return int(std::max<std::int64_t>({by_diffusion, by_time, 1}));

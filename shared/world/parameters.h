@@ -57,8 +57,8 @@ struct MaterialRules {
   std::int32_t roughness_q16 = 65536;     // 0 .. 65536 = 1; scales what flux, interleaved and scatter move at once
   std::int32_t diffusion_q16 = 65536;     // drift: D, cells^2 per unit of time, 0 .. 4 * 65536
   std::int32_t friction_inverse_q32 = 0;  // drift: 1/zeta, cells per unit of time for each newton, * 2^32, 0 .. 2^31-1
-  std::int32_t repose_arc_q = 0;          // drift by displacement: the angle of repose as an arc of a cell's side,
-                                          // radians * 0.1 mm, 0 .. quarterArc()
+  std::int32_t repose_q16 = 0;  // drift by displacement: the angle of repose as a share of a right angle, 0 ..
+                                // kReposeLimit
 
   bool operator==(const MaterialRules&) const = default;
 };
@@ -100,6 +100,7 @@ inline constexpr std::int32_t kCapacityRoundsLimit = 16;
 inline constexpr std::int32_t kActiveMarginLimit = 4096;
 inline constexpr std::int32_t kDiffusionLimit = 4 * kOneQ16;
 inline constexpr std::int32_t kDriftStepLimit = 16 * kOneQ16;
+inline constexpr std::int32_t kReposeLimit = 62259;  // 85.5 degrees
 
 /// How many bytes putParameters writes for so many materials.
 constexpr std::size_t parametersBytes(std::size_t material_count) { return 6 + 9 * 4 + 1 + material_count * 8 * 4; }
@@ -107,8 +108,10 @@ constexpr std::size_t parametersBytes(std::size_t material_count) { return 6 + 9
 /// Is soil of any material pressed together?
 bool anyCompression(const Parameters& parameters);
 
-/// Into how many equal steps a sweep of drift is split, so that each is stable by itself: D * step <= 1/4 for every
-/// material, and none is longer than a unit of time.
+/// Into how many equal steps a sweep of drift is split, so that each is stable by itself: over no edge does the flow
+/// grow by more than a quarter of what the difference of heights does, and no step is longer than a unit of time.
+/// By displacement the flow w(f) f grows up to (2 - a) / (1 - a) times as fast as f, a being the share of a right
+/// angle at which w begins.
 int driftSteps(const Parameters& parameters);
 
 /// Passes of the slope rule over the ground in a tick: sweeps_per_tick, or that many times driftSteps.

@@ -20,7 +20,7 @@ struct Thresholds {
   std::int32_t side = 0, diagonal = 0;
 };
 
-Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& material) {
+Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& material, std::int32_t cell_q) {
   switch (parameters.slopes) {
     case SlopeRule::exchange:
     case SlopeRule::flux:
@@ -33,14 +33,18 @@ Thresholds thresholdsOf(const Parameters& parameters, const MaterialRules& mater
   }
   if (parameters.drift_weights == DriftWeights::slope) return {material.slope_threshold_q, kNeverSteep};
   if (parameters.drift_weights == DriftWeights::none) return {0, kNeverSteep};
-  const std::int64_t rests = (std::int64_t(material.repose_arc_q) << 16) / std::max(material.diffusion_q16, 1);
+  const std::int64_t arc_q = std::int64_t(quarterArc(cell_q)) * material.repose_q16;
+  const std::int64_t rests = arc_q / std::max(material.diffusion_q16, 1);
   return {std::int32_t(std::min<std::int64_t>(rests, kNeverSteep)), kNeverSteep};
 }
 
-void addCells(const Tile& tile, int dx, int dy, const std::vector<Thresholds>& thresholds, Surroundings& around) {
+void addCells(const Tile& tile, int dx, int dy, const ScenePack& pack, const std::vector<Thresholds>& thresholds,
+              Surroundings& around) {
   for (int y = std::max(-1, dy * kSize); y < std::min(kSize + 1, (dy + 1) * kSize); ++y)
     for (int x = std::max(-1, dx * kSize); x < std::min(kSize + 1, (dx + 1) * kSize); ++x) {
-      const auto from = std::size_t((y - dy * kSize) * kSize + x - dx * kSize);
+      const int column = x - dx * kSize, row = y - dy * kSize;
+      if (tile.at.x * kSize + column >= pack.width_cells || tile.at.y * kSize + row >= pack.height_cells) continue;
+      const auto from = std::size_t(row * kSize + column);
       const auto to = std::size_t((y + 1) * kSide + x + 1);
       const Thresholds& own = thresholds[tile.material() == nullptr ? 0 : std::size_t((*tile.material())[from])];
       around.height[to] = tile.height()[from];
@@ -85,17 +89,17 @@ void setWake(Tile& tile, WakeMask mask, WorldState& state) {
 }
 
 /// Tiles that are all asleep and have their snow.
-void wakeUnstable(std::span<Tile* const> tiles, WorldState& state) {
+void wakeUnstable(std::span<Tile* const> tiles, const ScenePack& pack, WorldState& state) {
   std::vector<Thresholds> thresholds;
   for (const MaterialRules& material : state.parameters.materials)
-    thresholds.push_back(thresholdsOf(state.parameters, material));
+    thresholds.push_back(thresholdsOf(state.parameters, material, pack.cell_q));
   std::vector<WakeMask> masks;
   for (const Tile* tile : tiles) {
     Surroundings around;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         const Tile* near = state.tiles.find({tile->at.x + dx, tile->at.y + dy});
-        if (near != nullptr && near->wake_mask == 0) addCells(*near, dx, dy, thresholds, around);
+        if (near != nullptr && near->wake_mask == 0) addCells(*near, dx, dy, pack, thresholds, around);
       }
     masks.push_back(unstable(around));
   }
@@ -136,7 +140,7 @@ SnowOfTick::SnowOfTick(WorldState& state, const ScenePack& pack, std::int32_t ti
     snowOnTile(*tile, pack, tick, state);
     if (tile->wake_mask == 0) asleep.push_back(tile);
   }
-  wakeUnstable(asleep, state);
+  wakeUnstable(asleep, pack, state);
 }
 
 std::vector<Tile*> SnowOfTick::tiles() const {

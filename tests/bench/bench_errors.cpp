@@ -12,6 +12,7 @@
 #include "shared/base/statistics.h"
 #include "shared/sim/native_stages.h"
 #include "tests/bench/bench_measures.h"
+#include "tests/bench/bench_pile.h"
 
 namespace spoor {
 namespace {
@@ -91,7 +92,7 @@ class NearestBench {
       const int tasks = (shape_.side + domain_.columnsPerTask() - 1) / domain_.columnsPerTask();
       domain_.stale_columns.assign(std::size_t(tasks), 1);
       const auto start = Clock::now();
-      runNearest({pack_, parameters_, kernels(), pool_, area_}, domain_);
+      runNearest({pack_, 0, parameters_, kernels(), pool_, area_}, domain_);
       times.push_back(millisecondsSince(start));
     }
     time_ms = percentile(times, 0.5);
@@ -164,93 +165,6 @@ void measureSearches(const Settings& settings, const Shape& shape, Metric metric
   }
 }
 
-/// How a pile lies, compared with the round cone that its soil would make at the angle of repose.
-struct PileShape {
-  double steepest_excess = 0;  // largest excess over a threshold, of the threshold
-  double shape_error = 0;      // half the sum of differences from the cone, of the pile's volume
-  double azimuth_ratio = 0;    // largest radius at half the cone's height over the smallest
-  double centroid_cells = 0;   // distance of the soil's centroid from the pile's middle
-};
-
-class PileView {
- public:
-  explicit PileView(const Simulation& simulation, const ScenePack& pack)
-      : side_(pack.width_cells), height_(std::size_t(side_) * std::size_t(side_)) {
-    const BaseTerrain base(pack);
-    const int ground = base.height(0, 0);
-    for (const Tile* tile : simulation.state().tiles.sorted())
-      for (int i = 0; i < rules::kTileCells; ++i) {
-        const int x = tile->at.x * rules::kTileSize + i % rules::kTileSize;
-        const int y = tile->at.y * rules::kTileSize + i / rules::kTileSize;
-        if (x < side_ && y < side_) height_[std::size_t(y * side_ + x)] = tile->height()[std::size_t(i)] - ground;
-      }
-  }
-
-  PileShape shape(const Parameters& parameters) const {
-    PileShape result;
-    const double slope = parameters.materials[0].slope_threshold_q, middle = side_ / 2;
-    double volume = 0, sum_x = 0, sum_y = 0;
-    for (int y = 0; y < side_; ++y)
-      for (int x = 0; x < side_; ++x) {
-        volume += at(x, y);
-        sum_x += at(x, y) * (x - middle);
-        sum_y += at(x, y) * (y - middle);
-        result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 1, 0, parameters.materials[0].slope_threshold_q) / slope);
-        result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 0, 1, parameters.materials[0].slope_threshold_q) / slope);
-        for (const int dx : {1, -1})
-          result.steepest_excess =
-              std::max(result.steepest_excess, excess(x, y, dx, 1, parameters.materials[0].diagonal_threshold_q) /
-                                                   double(parameters.materials[0].diagonal_threshold_q));
-      }
-    const double radius = std::cbrt(3 * volume / (std::numbers::pi * slope));
-    double difference = 0;
-    for (int y = 0; y < side_; ++y)
-      for (int x = 0; x < side_; ++x) {
-        const double cone = std::max(0.0, slope * (radius - std::hypot(x - middle, y - middle)));
-        difference += std::abs(at(x, y) - cone);
-      }
-    result.shape_error = difference / (2 * volume);
-    result.centroid_cells = std::hypot(sum_x, sum_y) / volume;
-    result.azimuth_ratio = azimuthRatio(slope * radius / 2);
-    return result;
-  }
-
- private:
-  double at(int x, int y) const { return height_[std::size_t(y * side_ + x)]; }
-
-  double excess(int x, int y, int dx, int dy, int threshold) const {
-    if (x + dx < 0 || x + dx >= side_ || y + dy >= side_) return 0;
-    return std::abs(at(x, y) - at(x + dx, y + dy)) - threshold;
-  }
-
-  /// Largest over smallest radius at which rays from the middle fall below a height.
-  double azimuthRatio(double level) const {
-    double smallest = 1e9, largest = 0;
-    for (int ray = 0; ray < 64; ++ray) {
-      const double angle = ray * 2 * std::numbers::pi / 64;
-      double radius = 0;
-      while (radius < side_ / 2 - 2 &&
-             between(side_ / 2 + radius * std::cos(angle), side_ / 2 + radius * std::sin(angle)) >= level)
-        radius += 0.05;
-      smallest = std::min(smallest, radius);
-      largest = std::max(largest, radius);
-    }
-    return smallest > 0 ? largest / smallest : 0;
-  }
-
-  double between(double x, double y) const {
-    const int x0 = int(x), y0 = int(y);
-    const double u = x - x0, v = y - y0;
-    return (at(x0, y0) * (1 - u) + at(x0 + 1, y0) * u) * (1 - v) +
-           (at(x0, y0 + 1) * (1 - u) + at(x0 + 1, y0 + 1) * u) * v;
-  }
-
-  int side_;
-  std::vector<double> height_;
-};
-
 constexpr std::int64_t kSweepMarks[] = {10, 40, 160, 640, 2560};
 constexpr int kSweepsPerTick = 10;
 
@@ -267,7 +181,7 @@ void measureRule(const Settings& settings, SlopeRule rule, double roughness, con
   double relax_ms = 0;
   std::int64_t sweeps = 0;
   const auto print = [&](const char* state) {
-    const PileShape shape = PileView(simulation, scene.pack).shape(scene.pack.parameters);
+    const PileShape shape = pileShape(simulation.state(), scene.pack);
     std::printf("  %-26s %6lld sweeps%-9s %9.1f ms  excess %8.2f %%  shape %6.2f %%  round to %.3f  centroid %.3f\n",
                 name.c_str(), static_cast<long long>(sweeps), state, relax_ms, 100 * shape.steepest_excess,
                 100 * shape.shape_error, shape.azimuth_ratio, shape.centroid_cells);

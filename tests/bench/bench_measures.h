@@ -52,6 +52,10 @@ void measureErrors(const Settings& settings, Report& report);
 /// Craters: error and speed of their profile, memory, the spatial hash, lazy ground beside eager. Cossetin Neto et al.,
 /// figure 7.
 void measureCraters(const Settings& settings, Report& report);
+/// Cones of every material under every slope rule: how they come to rest.
+void measureCones(const Settings& settings, Report& report);
+/// Rule `drift` beside the published scheme of Gilardi et al.: stability, error, order of convergence, and time.
+void measureDrift(const Settings& settings, Report& report);
 /// The device's copy bandwidth.
 void measureBandwidth(const Settings& settings, Report& report);
 

@@ -151,20 +151,34 @@ Mesh thesisCar(std::int32_t cell_q) {
   return mesh;
 }
 
-/// Heaps a cone of soil on a state's ground and wakes the tiles that it covers.
+/// Heaps a cone of soil on a state's ground.
 void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state) {
   const std::int32_t radius = scene.cone_radius_cells, middle = scene.pack.width_cells / 2;
-  const std::int32_t first = (middle - radius) / rules::kTileSize, last = (middle + radius) / rules::kTileSize;
-  for (std::int32_t tile_y = first; tile_y <= last; ++tile_y)
-    for (std::int32_t tile_x = first; tile_x <= last; ++tile_x) {
+  const std::int64_t slope_q = 2 * scene.pack.parameters.materials[0].slope_threshold_q;
+  heapSoil(base, {middle - radius, middle - radius, middle + radius + 1, middle + radius + 1}, state,
+           [&](std::int64_t x, std::int64_t y) {
+             const std::int64_t distance = isqrt(std::uint64_t((x - middle) * (x - middle) + (y - middle) * (y - middle)));
+             return std::int32_t(slope_q * std::max<std::int64_t>(radius - distance, 0));
+           });
+}
+
+}  // namespace
+
+std::vector<std::string> benchSceneNames() {
+  return {"car491", "slab491", "pile", "small_pile", "car", "car_wide", "areas1", "areas2", "areas4", "areas8"};
+}
+
+void heapSoil(const BaseTerrain& base, const CellBox& box, WorldState& state,
+              const std::function<std::int32_t(std::int32_t, std::int32_t)>& added) {
+  for (std::int32_t tile_y = box.y0 / rules::kTileSize; tile_y <= (box.y1 - 1) / rules::kTileSize; ++tile_y)
+    for (std::int32_t tile_x = box.x0 / rules::kTileSize; tile_x <= (box.x1 - 1) / rules::kTileSize; ++tile_x) {
       auto tile = makeTile({tile_x, tile_y}, {&base}, 0);
       for (int i = 0; i < rules::kTileCells; ++i) {
-        const std::int64_t x = tile_x * rules::kTileSize + i % rules::kTileSize - middle;
-        const std::int64_t y = tile_y * rules::kTileSize + i / rules::kTileSize - middle;
-        const std::int64_t slope_length = radius - std::int64_t(isqrt(std::uint64_t(x * x + y * y)));
-        const std::int64_t added_q =
-            2 * scene.pack.parameters.materials[0].slope_threshold_q * std::max<std::int64_t>(slope_length, 0);
-        tile->height()[std::size_t(i)] += std::int32_t(added_q);
+        const std::int32_t x = tile_x * rules::kTileSize + i % rules::kTileSize;
+        const std::int32_t y = tile_y * rules::kTileSize + i / rules::kTileSize;
+        if (x >= base.pack().width_cells || y >= base.pack().height_cells) continue;
+        const std::int32_t added_q = added(x, y);
+        tile->height()[std::size_t(i)] += added_q;
         tile->ground += added_q;
       }
       tile->hash = tileHash(*tile);
@@ -175,12 +189,6 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
       state.tiles.setWake(live, kWakeMaskLimit - 1);
       state.tiles_hash += tileStateHash(live);
     }
-}
-
-}  // namespace
-
-std::vector<std::string> benchSceneNames() {
-  return {"car491", "slab491", "pile", "small_pile", "car", "car_wide", "areas1", "areas2", "areas4", "areas8"};
 }
 
 BenchScene makeBenchScene(const std::string& name) {

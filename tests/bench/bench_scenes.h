@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,10 @@ BenchScene makeThesisScene(const std::string& name, int heightmap_size, int terr
 Parameters thesisIterative();
 Parameters thesisSsbo();
 Parameters thesisSsboMultiple();
+
+/// Makes the tiles of a box live and awake, with more soil on each of their cells: added(x, y), 0.1 mm.
+void heapSoil(const BaseTerrain& base, const CellBox& box, WorldState& state,
+              const std::function<std::int32_t(std::int32_t, std::int32_t)>& added);
 
 /// The scene's state before its first tick. The base is the scene's pack's.
 WorldState startOf(const BenchScene& scene, const BaseTerrain& base);
