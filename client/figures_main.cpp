@@ -11,6 +11,7 @@
 #include <string>
 
 #include "client/crater_measure.h"
+#include "client/drift_figures.h"
 #include "client/figure_scene.h"
 #include "client/picture_options.h"
 #include "client/views.h"
@@ -222,6 +223,11 @@ Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
   if (!arguments.measure.empty()) return measureCraters(settings, arguments.json);
   if (!arguments.pack.empty()) return drawPack(arguments, settings);
   if (arguments.only == "craters") return drawCraters(arguments, settings);
+  if (arguments.only == "drift")
+    return drawDrift(settings, [&] { return backendFor(arguments); },
+                     [&](const Renderer& renderer, const std::string& name) {
+                       return writePicture(renderer, arguments, name);
+                     });
   for (const DisplacementFigure& figure : kDisplacementFigures)
     if (arguments.only.empty() || arguments.only == figure.number)
       if (const Status drawn = drawDisplacement(arguments, settings, figure); !drawn) return drawn;
@@ -239,7 +245,7 @@ int run(int argc, char** argv) {
       "spoor-figures",
       "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
   options.add("out", "DIR", "where pictures go", &arguments.folder);
-  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind", &arguments.only);
+  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind; drift: tracks in materials", &arguments.only);
   options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);
   options.add("ticks", "COUNT", "after how many ticks; -1: the pack's own", &arguments.tick, -1, 1 << 30);
   options.add(
@@ -277,8 +283,9 @@ int run(int argc, char** argv) {
     return refuse(fmt::format("--measure \"{}\": want craters", arguments.measure));
   if (!arguments.json.empty() && arguments.measure.empty()) return refuse("--json: goes with --measure");
   const auto known = [&](const DisplacementFigure& figure) { return arguments.only == figure.number; };
-  if (!arguments.only.empty() && arguments.only != "craters" && std::ranges::none_of(kDisplacementFigures, known))
-    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3, or craters", arguments.only));
+  const bool other = arguments.only == "craters" || arguments.only == "drift";
+  if (!arguments.only.empty() && !other && std::ranges::none_of(kDisplacementFigures, known))
+    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3, or craters or drift", arguments.only));
   if (const Status done = drawAll(arguments, *settings); !done) {
     fmt::print(stderr, "spoor-figures: {}\n", done.error());
     return 1;

@@ -45,7 +45,7 @@ vec2 borderWander(ivec2 at, float footprint_cells) {
 }
 
 /// Adds the materials of a place to it. Returns what lies under them.
-vec3 addMaterials(Cover cover, MapPlace place, float footprint_m, float grain, inout GroundSurface surface) {
+vec3 addMaterials(Cover cover, MapPlace place, vec2 footprint_m, float grain, inout GroundSurface surface) {
   GroundCover mixed = GroundCover(vec3(0.0), vec2(0.0), 0.0, 0.0, 0.0, 0.0);
   vec3 soil = vec3(0.0);
   for (int i = 0; i < cover.count; ++i) {
@@ -79,7 +79,7 @@ GroundSurface surfaceAt(vec3 rel, vec2 rel_cells, vec2 footprint_cells, Relief r
   Cover cover = coverAt(rel_cells, level, place.facing * borderWander(place.at, footprint_cells.y));
   GroundSurface surface = GroundSurface(vec3(0.0), vec3(0.0), vec2(0.0), 1.0, 1.0, 0.0);
   for (int i = 0; i < cover.count; ++i) surface.bounced += cover.share[i] * looks[cover.material[i]].albedo.rgb;
-  vec3 soil = addMaterials(cover, place, footprint_m.y, grain.z, surface);
+  vec3 soil = addMaterials(cover, place, footprint_m, grain.z, surface);
   vec2 fine = surface.slope;
   surface.sky *= relief.sky * relief.sky;
   surface.sun *= relief.sun;
@@ -100,7 +100,7 @@ GroundSurface surfaceAt(vec3 rel, vec2 rel_cells, vec2 footprint_cells, Relief r
 vec3 mirroredLight(GroundSurface surface, vec3 normal, vec3 to_eye, float lit) {
   float fresnel = 0.03 + 0.97 * pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
   float shine = pow(max(dot(normal, normalize(to_eye + frame.sun.xyz)), 0.0), 60.0);
-  return surface.wet * (0.6 * fresnel * skyColour(reflect(-to_eye, normal)) * surface.sky + 0.5 * shine * lit * kSunLight);
+  return surface.wet * (0.5 * fresnel * skyColour(reflect(-to_eye, normal)) * surface.sky + 0.16 * shine * lit * kSunLight);
 }
 
 /// Colour that the ground sends to the eye, with fog; kShadeNormals: its normal.
