@@ -22,17 +22,17 @@ Mesh wheelMesh() {
   constexpr int kSegments = 96, kLugSegments = 8;
   constexpr double kLug_m = 0.012, kShoulder_m = 0.03;
   const double half_m = kWheelWidth_m / 2.0;
-  const double rings_m[] = {-half_m, -half_m + 0.03, -0.012, 0.012, half_m - 0.03, half_m};
-  constexpr int kRings = 6;
+  const double rings_m[] = {-half_m, -half_m + 0.03, -half_m + 0.05, -0.012, 0.012, half_m - 0.05, half_m - 0.03, half_m};
+  constexpr int kRings = 8;
   Mesh mesh;
   mesh.name = "wheel";
   for (int segment = 0; segment < kSegments; ++segment) {
     const double angle = 2.0 * std::numbers::pi * segment / kSegments;
     for (int ring = 0; ring < kRings; ++ring) {
-      const int half = ring < 3 ? 0 : kLugSegments / 2;
+      const int half = ring < kRings / 2 ? 0 : kLugSegments / 2;
       const bool lug = (segment + half) % kLugSegments < kLugSegments / 2;
-      const bool shoulder = ring == 0 || ring == kRings - 1;
-      const double radius_m = kWheelRadius_m - (shoulder ? kShoulder_m : 0.0) - (lug || shoulder ? 0.0 : kLug_m);
+      const int inwards = std::min(ring, kRings - 1 - ring);  // from the shoulder, over its even edge, to the lugs
+      const double radius_m = kWheelRadius_m - (inwards == 0 ? kShoulder_m : inwards == 1 || !lug ? kLug_m : 0.0);
       mesh.vertices.push_back({lengthOf(radius_m * std::sin(angle)), lengthOf(rings_m[ring]),
                                lengthOf(radius_m * std::cos(angle))});
     }
@@ -99,7 +99,7 @@ MaterialRules rulesOf(double friction_inverse, double repose, double diffusion, 
   rules.friction_inverse_q32 = std::int32_t(friction_inverse * 4294967296.0);
   rules.slope_threshold_q = std::int32_t(std::tan(repose) * kCell_q);
   rules.diagonal_threshold_q = std::int32_t(std::tan(repose) * kCell_q * std::numbers::sqrt2);
-  rules.repose_arc_q = std::int32_t(repose * kCell_q);
+  rules.repose_q16 = std::int32_t(repose / (std::numbers::pi / 2.0) * kOneQ16);
   rules.diffusion_q16 = std::int32_t(diffusion * kOneQ16);
   rules.compression_q16 = std::int32_t(compression * kOneQ16);
   return rules;
@@ -132,6 +132,9 @@ ScenePack fieldPack(const char* name, const std::vector<DriftMaterial>& material
   Parameters& parameters = pack.parameters;
   parameters.slopes = SlopeRule::drift;
   parameters.sweeps_per_tick = 16;
+  parameters.displacement = Displacement::spread;
+  parameters.penetration_divider_q = 40;
+  parameters.spread_cells = 8;
   parameters.obstacle_threshold_q = 10;
   parameters.materials.clear();
   pack.materials.clear();

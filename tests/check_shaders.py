@@ -16,10 +16,11 @@ STAGES = {".comp": "comp", ".vert": "vert", ".tesc": "tesc", ".tese": "tese", ".
 COMPACTS = [f"SPOOR_COMPACTS {compacts}" for compacts in (0, 1)]
 METRICS = [f"SPOOR_METRIC {metric}" for metric in (0, 1, 2)]
 SPREADS = [f"SPOOR_SPREAD {spread}" for spread in (0, 1)]
-BENEATH = [f"SPOOR_BENEATH {beneath}" for beneath in (0, 1)]
+MIXED = [f"SPOOR_MIXED {mixed}" for mixed in (0, 1)]
+SLOPES = [f"{mixed}|SPOOR_BENEATH {beneath}" for mixed in MIXED for beneath in (0, 1)]
 DEFINES = {
-    "gather.comp": COMPACTS,
-    "penetration.comp": COMPACTS,
+    "gather.comp": [f"{mixed}|{compacts}" for mixed in MIXED for compacts in COMPACTS],
+    "penetration.comp": ["SPOOR_COMPACTS 0"] + [f"{mixed}|SPOOR_COMPACTS 1" for mixed in MIXED],
     "hash.comp": COMPACTS,
     "nearest_search.comp": METRICS,
     "flood_pass.comp": METRICS,
@@ -28,13 +29,17 @@ DEFINES = {
     "displace_take.comp": SPREADS,
     "picture.frag": [f"SPOOR_TEXTURES {textures}|SPOOR_COVER {cover}" for textures in (1, 511) for cover in (0, 1)],
     "terrain.tese": [f"SPOOR_STONES {stones}|SPOOR_COVER {cover}" for stones in (0, 1) for cover in (0, 1)],
-    "slope_amounts.comp": BENEATH,
-    "slope_gather.comp": BENEATH,
-    "slope_scatter.comp": BENEATH,
-    "slope_flux.comp": BENEATH,
-    "exchange_along.comp": [f"SPOOR_PARITY {parity}|SPOOR_BENEATH {beneath}" for parity in (0, 1) for beneath in (0, 1)],
-    "exchange_across.comp": [f"SPOOR_PARITY {parity}|SPOOR_SHIFT {shift}|SPOOR_BENEATH {beneath}"
-                             for parity in (0, 1) for shift in (0, 1, -1) for beneath in (0, 1)],
+    "slope_amounts.comp": SLOPES,
+    "slope_gather.comp": SLOPES,
+    "slope_scatter.comp": SLOPES,
+    "slope_flux.comp": SLOPES,
+    "drift.comp": [f"{slopes}|SPOOR_WEIGHTS {weights}|SPOOR_PUSHES {pushes}"
+                   for slopes in SLOPES for weights in (0, 1, 2) for pushes in (0, 1)],
+    "push_soil.comp": MIXED,
+    "sweep.comp": MIXED,
+    "exchange_along.comp": [f"{slopes}|SPOOR_PARITY {parity}|SPOOR_SHIFT 0" for slopes in SLOPES for parity in (0, 1)],
+    "exchange_across.comp": [f"{slopes}|SPOOR_PARITY {parity}|SPOOR_SHIFT {shift}"
+                             for slopes in SLOPES for parity in (0, 1) for shift in (0, 1, -1)],
 }
 
 

@@ -387,7 +387,7 @@ TEST(GlCratersTables, SoilMeetsTheHeightLimitWhereACraterMayLiftTheGroundToIt) {
   const MeshTable meshes = makeMeshTable(pack);
   const std::vector<CellBox> cratered = {{3, 4, 9, 8}};
   const auto beneath = [&](std::int32_t highest, std::span<const CellBox> boxes) {
-    return makeTickTables(pack, meshes, plan, slots, highest, {}, boxes).beneath;
+    return makeTickTables(pack, meshes, plan, slots, highest, {}, {{}, {}, boxes}).beneath;
   };
   constexpr std::int32_t kRaise = 3 * rules::kCraterHeightLimit;
   EXPECT_FALSE(beneath(rules::kHeightLimit - 501, {}));

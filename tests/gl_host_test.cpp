@@ -114,9 +114,9 @@ TEST(GlLimits, ErrorNamesEveryLimitThatFallsShort) {
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error(),
             "OpenGL of a toy does not suffice: GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 134217727, 134217728 is needed; "
-            "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 8, 13 is needed");
+            "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 8, 14 is needed");
   limits.storage_block_bytes += 1;
-  limits.compute_storage_blocks = 13;
+  limits.compute_storage_blocks = 14;
   EXPECT_TRUE(limitsStatus(limits));
 }
 

@@ -63,7 +63,7 @@ class GlStageRig final : public StageRig {
     pool_ = std::make_unique<TilePool>(device_->limits.storage_block_bytes, 1 << 16, nobody);
     ThreadPool threads(1);
     const ActiveTiles tiles = takeTiles(plan_, world.base, WorldState{}, threads);
-    auto slots = pool_->hold(tiles.tiles, plan_.tick, compacts());
+    auto slots = pool_->hold(tiles.tiles, plan_.tick, {compacts(), plan_.parameters.materials.size() > 1});
     if (!slots) throw std::runtime_error(slots.error());
     slots_ = std::move(*slots);
     check(device_->stages.load(meshes_));
@@ -140,7 +140,7 @@ class GlStageRig final : public StageRig {
     penetrated_ = false;
   }
 
-  bool compacts() const { return plan_.parameters.materials[0].compression_q16 > 0; }
+  bool compacts() const { return anyCompression(plan_.parameters); }
 
   void restart(const Cells& heights, const Cells& undersides, const Cells& compacted) {
     begin({});

@@ -14,6 +14,7 @@
 #include "shaders/host/tick_results.h"
 #include "shared/base/assert.h"
 #include "shared/base/thread_pool.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 namespace {
@@ -35,6 +36,7 @@ std::int64_t pairBytes(SlopeRule rule, RelaxSchedule schedule) {
     case SlopeRule::exchange:  // two heights in and out, two bedrocks in; fused, a cell once for its four pairs
       return schedule == RelaxSchedule::fused ? 24 / 4 : 24;
     case SlopeRule::flux:
+    case SlopeRule::drift:
       return 16 / 4;  // per cell: height, bedrock, underside in, new height out
     case SlopeRule::interleaved:
       return 32 / 4;  // per cell: the same twice but bedrock, amounts out and in
@@ -105,7 +107,7 @@ class GlBackend final : public Backend {
         StageTimer timer(tick.effect.stage_ms, Stage::active);
         tick.active = takeTiles(tick.plan, base, state, pool_);
       }
-      if (Status status = queueStages(tick, state.craters); !status) {
+      if (Status status = queueStages(tick, state); !status) {
         forgetDevice();  // fresh tiles are gone again
         return status;
       }
@@ -156,6 +158,8 @@ class GlBackend final : public Backend {
     return {};
   }
 
+  void tilesChanged(std::span<Tile* const> tiles) override { device_->tiles.drop(tiles); }
+
   void forget() override {
     forgetDevice();
     submitted_.reset();
@@ -201,20 +205,22 @@ class GlBackend final : public Backend {
   }
 
   /// Brings a tick's tiles and tables to the device.
-  Status prepare(Submitted& tick) {
+  Status prepare(Submitted& tick, std::span<const Snowfall> snowfalls) {
     StageTimer timer(tick.effect.stage_ms, Stage::active);
     if (loaded_ != tick.pack) {
       meshes_ = makeMeshTable(*tick.pack);
       const bool with_craters = tick.pack->crater_limits.radius_q > 0;
-      if (Status status = device_->stages.load(meshes_, with_craters); !status) return status;
+      const bool with_snow = !tick.pack->snowfalls.empty();
+      if (Status status = device_->stages.load(meshes_, with_craters, with_snow); !status) return status;
       if (with_craters)
         if (Status status = device_->craters.compile(); !status) return status;
       loaded_ = tick.pack;
     }
-    auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick, compactsIn(tick.plan));
+    const PoolPlanes planes{compactsIn(tick.plan), tick.plan.parameters.materials.size() > 1};
+    auto slots = device_->tiles.hold(tick.active.tiles, tick.plan.tick, planes);
     if (!slots) return Error{slots.error()};
     tick.tables = makeTickTables(*tick.pack, meshes_, tick.plan, *slots, std::max(device_->tiles.highest(), highest_),
-                                 shape_, tick.active.cratered);
+                                 shape_, {tick.active.snowed, snowfalls, tick.active.cratered});
     if (Status status = device_->results.reserve(kHeadBytes + resultBytes(tick)); !status) return status;
     return device_->stages.begin(tick.tables);
   }
@@ -233,17 +239,19 @@ class GlBackend final : public Backend {
   std::int64_t dispatchCount() const { return device_->stages.dispatchCount() + device_->craters.dispatchCount(); }
 
   /// Queues all stages of a tick, and the copy of their results to the host.
-  Status queueStages(Submitted& tick, const CraterSet& craters) {
+  Status queueStages(Submitted& tick, const WorldState& state) {
     GlStages& stages = device_->stages;
     StageClock& clock = device_->clock;
     const std::int64_t copied_before = copiedBytes(), dispatched_before = dispatchCount();
-    if (Status status = prepare(tick); !status) return status;
+    if (Status status = prepare(tick, state.snowfalls); !status) return status;
     const TickTables& tables = tick.tables;
     clock.begin();
-    if (!tables.craters.tiles.empty()) {
-      if (Status status = queueCraters(tick, craters); !status) return status;
-      clock.end(Stage::craters);
-    }
+    const bool snows = tables.snow.groups.count > 0, deforms = !tables.craters.tiles.empty();
+    if (snows)
+      if (Status status = stages.snow(tables, device_->tiles); !status) return status;
+    if (deforms)
+      if (Status status = queueCraters(tick, state.craters); !status) return status;
+    if (snows || deforms) clock.end(Stage::craters);
     stages.gather(tables, device_->tiles);
     clock.end(Stage::active);
     if (tables.stood.cover.count > 0) stages.depth(tables, GlStages::kStood);
@@ -312,6 +320,7 @@ class GlBackend final : public Backend {
     const std::vector<Tile*> tiles = tick.active.tiles;
     std::vector<TileOutcome> outcomes(count);
     std::vector<Uncollected::Place> places(count);
+    commitSnowed(tick, state);
     commitCratered(tick, places, state);
     for (std::size_t i = 0; i < count; ++i) {
       const auto result = resultOf(tick, i);
@@ -340,6 +349,25 @@ class GlBackend final : public Backend {
     return result;
   }
 
+  /// Stage craters: what fell on tiles. Their cells on the host take it at once, as rules/snowfall.h tells it: they are
+  /// as of the tick before, and what is still to come from the device is added to them. So a tile that this tick leaves
+  /// asleep has all its cells before the next one begins, whose snow may look at them.
+  void commitSnowed(const Submitted& tick, WorldState& state) {
+    std::vector<std::size_t> snowed;
+    for (std::size_t i = 0; i < tick.active.tiles.size(); ++i)
+      if (tick.active.snowed[i] != 0) snowed.push_back(i);
+    std::vector<std::int64_t> gained(snowed.size());
+    pool_.forEach(int(snowed.size()), [&](int i, int) {
+      Tile& tile = *tick.active.tiles[snowed[std::size_t(i)]];
+      gained[std::size_t(i)] = addSnow(*tick.pack, tile.at, state.snowfalls, tick.plan.tick, tile.height());
+    });
+    // The hash of the tick's end, as with craters.
+    for (std::size_t i = 0; i < snowed.size(); ++i) {
+      Tile& tile = *tick.active.tiles[snowed[i]];
+      commitSnow(tile, gained[i], hashOf(resultOf(tick, snowed[i]), tile, compactsIn(tick.plan)), state);
+    }
+  }
+
   /// Stage craters: the sums of tiles that new ones changed, and where the differences of their cells are.
   void commitCratered(const Submitted& tick, std::vector<Uncollected::Place>& places, WorldState& state) const {
     const CraterTables& craters = tick.tables.craters;
@@ -360,7 +388,7 @@ class GlBackend final : public Backend {
   ReadbackBuffer& readback() { return device_->changed_cells[next_readback_]; }
   static std::int64_t bytesOf(std::int64_t cells) { return cells * std::int64_t(sizeof(std::int32_t)); }
 
-  static bool compactsIn(const TickPlan& plan) { return plan.parameters.materials[0].compression_q16 > 0; }
+  static bool compactsIn(const TickPlan& plan) { return anyCompression(plan.parameters); }
 
   /// The effect's figures.
   void fillIn(const Submitted& tick, std::int64_t tile_count, TickEffect& effect) const {
@@ -372,9 +400,10 @@ class GlBackend final : public Backend {
     effect.kept_back = std::int64_t(std::uint64_t(head_.kept_back_high) << 32 | head_.kept_back_low);
     effect.pairs_visited = head_.slabs_visited * kSlabPairs;
     if (plan.parameters.slopes != SlopeRule::exchange) {
+      const int edges = plan.parameters.slopes == SlopeRule::drift ? 2 : 4;
       effect.pairs_visited = 0;
       for (const SubStep& sub_step : plan.sub_steps)
-        effect.pairs_visited += sub_step.sweep_count * 4 * effect.active_cells;
+        effect.pairs_visited += sub_step.sweep_count * edges * effect.active_cells;
     }
     effect.relax_bytes = effect.pairs_visited * pairBytes(plan.parameters.slopes, schedule_);
     effect.bytes_moved += effect.relax_bytes + effect.active_cells * (kGatherBytes + kHashBytes) +

@@ -1,4 +1,4 @@
-// Stage craters.
+// Stage craters: snow, then craters.
 #include <algorithm>
 #include <stdexcept>
 
@@ -29,17 +29,28 @@ int mostEntries(const CraterTables& tiles, const CraterTable& table, std::int32_
 
 }  // namespace
 
-Result<const GlProgram*> GlStages::craterProgram() {
+Result<const GlProgram*> GlStages::compiled(const GlProgram& (GlPrograms::*program)()) {
   try {
-    return &programs_.craters();
+    return &(programs_.*program)();
   } catch (const std::runtime_error& error) {
     return Error{error.what()};
   }
 }
 
+Status GlStages::snow(const TickTables& tick, const TilePool& pool) {
+  const auto program = compiled(&GlPrograms::snow);
+  if (!program) return Error{program.error()};
+  bindTable(rules::kBindSnowTiles, tick.snow.tiles);
+  bindTable(rules::kBindSnowLayers, tick.snow.layers);
+  pool.height().bind(rules::kBindPoolHeight);
+  use(**program);
+  dispatch(tick.snow.groups);
+  return {};
+}
+
 Status GlStages::craters(const TickTables& tick, const TilePool& pool, const CraterSet& craters, std::size_t first_new,
                          const GlCraterTable& table, std::int32_t cell_q) {
-  const auto program = craterProgram();
+  const auto program = compiled(&GlPrograms::craters);
   if (!program) return Error{program.error()};
   const int most = mostEntries(tick.craters, craters.table(), cell_q);
   const std::int64_t cells = tick.craters.cells;

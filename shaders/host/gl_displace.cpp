@@ -39,7 +39,10 @@ void GlStages::penetration(const TickTables& tick, int i) {
   free_mask_.bind(rules::kBindFreeMask);
   row_chunks_.bind(rules::kBindRowChunks);
   bindTable(rules::kBindRowFlags, tick.row_flags);
-  if (tick.parameters.materials[0].compression_q16 > 0) compacted_.bind(rules::kBindCompacted);
+  if (anyCompression(tick.parameters)) {
+    compacted_.bind(rules::kBindCompacted);
+    bindMaterials(tick, rules::kBindDomainMaterial);
+  }
   use(*chosen_.penetration, step.first_list);
   setUniform(2, leastToPlace(tick.parameters));
   dispatch(step.domain_blocks);
@@ -47,7 +50,7 @@ void GlStages::penetration(const TickTables& tick, int i) {
 
 void GlStages::nearest(const TickTables& tick, int i) {
   const SubStepTables& step = tick.sub_steps[std::size_t(i)];
-  if (step.domain_blocks.count == 0) return;
+  if (step.domain_blocks.count == 0 || tick.parameters.displacement == Displacement::none) return;
   if (tick.parameters.nearest == NearestSearch::exact)
     search(tick, i);
   else
@@ -104,6 +107,7 @@ void GlStages::flood(const TickTables& tick, int i, int round) {
 
 void GlStages::displace(const TickTables& tick, int i) {
   if (tick.sub_steps[std::size_t(i)].domain_blocks.count == 0) return;
+  if (tick.parameters.displacement == Displacement::none) return;
   if (tick.parameters.displacement == Displacement::iterative) return flow(tick, i);
   for (int round = 0; round < tick.parameters.capacity_rounds; ++round) displaceRound(tick, i, round);
 }

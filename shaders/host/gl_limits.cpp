@@ -21,7 +21,7 @@ std::array<Need, 9> needs(const GlLimits& limits) {
   return {{{"ten times the OpenGL version", limits.version_number, 45},
            {"GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limits.storage_block_bytes, std::int64_t(1) << 27},
            {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", limits.storage_bindings, 16},
-           {"GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS", limits.compute_storage_blocks, 13},
+           {"GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS", limits.compute_storage_blocks, 14},
            {"GL_MAX_COMPUTE_SHARED_MEMORY_SIZE", limits.shared_bytes, 32768},
            {"GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS", limits.group_invocations, 1024},
            {"GL_MAX_COMPUTE_WORK_GROUP_SIZE[0]", limits.group_size_x, 1024},

@@ -11,7 +11,8 @@ std::string defined(bool on) { return on ? "1" : "0"; }
 
 bool sameMethods(const Parameters& a, const Parameters& b) {
   return a.displacement == b.displacement && a.nearest == b.nearest && a.metric == b.metric && a.slopes == b.slopes &&
-         (a.materials[0].compression_q16 > 0) == (b.materials[0].compression_q16 > 0);
+         a.drift_weights == b.drift_weights && anyCompression(a) == anyCompression(b) &&
+         (a.materials.size() > 1) == (b.materials.size() > 1);
 }
 
 }  // namespace
@@ -28,23 +29,25 @@ const GlProgram* GlPrograms::get(const std::string& name, ShaderDefines defines,
 const TickPrograms& GlPrograms::choose(const Parameters& parameters) {
   if (chosen_.gather != nullptr && sameMethods(parameters, chosen_by_)) return chosen_;
   TickPrograms chosen;
-  const std::string compacts = defined(parameters.materials[0].compression_q16 > 0);
-  chosen.gather = get("gather", {{"SPOOR_COMPACTS", compacts}});
+  const bool presses = anyCompression(parameters);
+  const std::string compacts = defined(presses), mixed = defined(parameters.materials.size() > 1);
+  chosen.gather = get("gather", {{"SPOOR_COMPACTS", compacts}, {"SPOOR_MIXED", mixed}});
   chosen.cover = get("cover");
   chosen.ceiling = get("ceiling");
   chosen.place = get("place");
   chosen.depth = get("depth");
   chosen.depth_large = get("depth_large");
-  chosen.penetration = get("penetration", {{"SPOOR_COMPACTS", compacts}});
+  chosen.penetration = get("penetration", {{"SPOOR_COMPACTS", compacts}, {"SPOOR_MIXED", presses ? mixed : "0"}});
   chosen.hash = get("hash", {{"SPOOR_COMPACTS", compacts}});
   chooseDisplacement(parameters, chosen);
-  chooseSlopes(parameters.slopes, chosen);
+  chooseSlopes(parameters, chosen);
   chosen_ = chosen;
   chosen_by_ = parameters;
   return chosen_;
 }
 
 void GlPrograms::chooseDisplacement(const Parameters& parameters, TickPrograms& chosen) {
+  if (parameters.displacement == Displacement::none) return;
   const std::string metric = std::to_string(int(parameters.metric));
   const bool exact = parameters.nearest == NearestSearch::exact;
   if (exact) {
@@ -70,26 +73,51 @@ void GlPrograms::chooseDisplacement(const Parameters& parameters, TickPrograms& 
   chosen.displace_give = get("displace_give");
 }
 
-void GlPrograms::chooseSlopes(SlopeRule rule, TickPrograms& chosen) {
-  if (rule == SlopeRule::exchange && schedule_ == RelaxSchedule::fused) chosen.sweep = get("sweep", {}, kLargeGroup);
+void GlPrograms::chooseSlopes(const Parameters& parameters, TickPrograms& chosen) {
+  const ShaderDefines mixed = {{"SPOOR_MIXED", defined(parameters.materials.size() > 1)}};
+  const SlopeRule rule = parameters.slopes;
+  if (rule == SlopeRule::exchange) return chooseExchange(mixed, chosen);
+  if (rule == SlopeRule::drift) return chooseDrift(parameters, mixed, chosen);
   for (std::size_t beneath = 0; beneath < 2; ++beneath) {
-    const ShaderDefines defines = {{"SPOOR_BENEATH", std::to_string(beneath)}};
+    ShaderDefines defines = mixed;
+    defines.emplace_back("SPOOR_BENEATH", std::to_string(beneath));
     if (rule == SlopeRule::flux) chosen.slope_sweep[beneath] = get("slope_flux", defines);
     if (rule == SlopeRule::scatter) chosen.slope_sweep[beneath] = get("slope_scatter", defines);
-    if (rule == SlopeRule::interleaved) {
-      chosen.slope_amounts[beneath] = get("slope_amounts", defines);
-      chosen.slope_sweep[beneath] = get("slope_gather", defines);
-    }
-    if (rule != SlopeRule::exchange || schedule_ == RelaxSchedule::fused) continue;
-    for (int matching = 0; matching < rules::kMatchingCount; ++matching) {
-      const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
-      chosen.exchange[std::size_t(matching)][beneath] =
-          get(matching < rules::kMatchVertical ? "exchange_along" : "exchange_across",
-              {{"SPOOR_PARITY", std::to_string(matching & 1)},
-               {"SPOOR_SHIFT", std::to_string(shift)},
-               {"SPOOR_BENEATH", std::to_string(beneath)}});
-    }
+    if (rule != SlopeRule::interleaved) continue;
+    chosen.slope_amounts[beneath] = get("slope_amounts", defines);
+    chosen.slope_sweep[beneath] = get("slope_gather", defines);
   }
+}
+
+void GlPrograms::chooseExchange(const ShaderDefines& mixed, TickPrograms& chosen) {
+  if (schedule_ == RelaxSchedule::fused) {
+    chosen.sweep = get("sweep", mixed, kLargeGroup);
+    return;
+  }
+  for (int matching = 0; matching < rules::kMatchingCount; ++matching)
+    for (std::size_t beneath = 0; beneath < 2; ++beneath) {
+      const int shift = matching < rules::kMatchDiagonal ? 0 : matching < rules::kMatchAntidiagonal ? 1 : -1;
+      ShaderDefines defines = mixed;
+      defines.emplace_back("SPOOR_PARITY", std::to_string(matching & 1));
+      defines.emplace_back("SPOOR_SHIFT", std::to_string(shift));
+      defines.emplace_back("SPOOR_BENEATH", std::to_string(beneath));
+      chosen.exchange[std::size_t(matching)][beneath] =
+          get(matching < rules::kMatchVertical ? "exchange_along" : "exchange_across", defines);
+    }
+}
+
+void GlPrograms::chooseDrift(const Parameters& parameters, const ShaderDefines& mixed, TickPrograms& chosen) {
+  for (std::size_t beneath = 0; beneath < 2; ++beneath)
+    for (std::size_t pushes = 0; pushes < 2; ++pushes) {
+      ShaderDefines defines = mixed;
+      defines.emplace_back("SPOOR_BENEATH", std::to_string(beneath));
+      defines.emplace_back("SPOOR_WEIGHTS", std::to_string(int(parameters.drift_weights)));
+      defines.emplace_back("SPOOR_PUSHES", std::to_string(pushes));
+      chosen.drift[beneath][pushes] = get("drift", defines);
+    }
+  chosen.push_count = get("push_count");
+  chosen.push_force = get("push_force");
+  chosen.push_soil = get("push_soil", mixed);
 }
 
 }  // namespace spoor

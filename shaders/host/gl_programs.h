@@ -29,6 +29,8 @@ struct TickPrograms {
   // Of each matching; the second where bodies may stand over active tiles.
   std::array<std::array<const GlProgram*, 2>, rules::kMatchingCount> exchange{};
   const GlProgram* sweep = nullptr;
+  std::array<std::array<const GlProgram*, 2>, 2> drift{};  // the second as above; then where bodies push
+  const GlProgram *push_count = nullptr, *push_force = nullptr, *push_soil = nullptr;
   std::array<const GlProgram*, 2> slope_amounts{}, slope_sweep{};  // the second as above
 };
 
@@ -39,13 +41,16 @@ class GlPrograms {
 
   /// Throws std::runtime_error where a shader does not compile or link.
   const TickPrograms& choose(const Parameters& parameters);
-  /// The one of stage craters, which no parameter chooses. Throws as above.
+  /// Those of stage craters, which no parameter chooses. Throw as above.
   const GlProgram& craters() { return *get("crater_ground"); }
+  const GlProgram& snow() { return *get("snow"); }
 
  private:
   const GlProgram* get(const std::string& name, ShaderDefines defines = {}, int groups = 1);
   void chooseDisplacement(const Parameters& parameters, TickPrograms& chosen);
-  void chooseSlopes(SlopeRule rule, TickPrograms& chosen);
+  void chooseSlopes(const Parameters& parameters, TickPrograms& chosen);
+  void chooseExchange(const ShaderDefines& mixed, TickPrograms& chosen);
+  void chooseDrift(const Parameters& parameters, const ShaderDefines& mixed, TickPrograms& chosen);
 
   int group_;
   RelaxSchedule schedule_;

@@ -36,6 +36,9 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       underside_("the active tiles' undersides", limits.storage_block_bytes),
       underside_before_("the active tiles' earlier undersides", limits.storage_block_bytes),
       compacted_("the active tiles' compacted soil", limits.storage_block_bytes),
+      material_("the active tiles' materials", limits.storage_block_bytes),
+      push_x_("the active tiles' pushes", limits.storage_block_bytes),
+      push_y_("the active tiles' pushes", limits.storage_block_bytes),
       tile_states_("the active tiles' states", limits.storage_block_bytes),
       overlap_("the domains' overlap", limits.storage_block_bytes),
       free_mask_("the domains' free cells", limits.storage_block_bytes),
@@ -57,9 +60,11 @@ GlStages::GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedul
       crater_changes_("what craters change", limits.storage_block_bytes),
       crater_sums_("the sums of craters", limits.storage_block_bytes) {}
 
-Status GlStages::load(const MeshTable& meshes, bool with_craters) {
+Status GlStages::load(const MeshTable& meshes, bool with_craters, bool with_snow) {
   if (with_craters)
-    if (auto program = craterProgram(); !program) return Error{program.error()};
+    if (auto program = compiled(&GlPrograms::craters); !program) return Error{program.error()};
+  if (with_snow)
+    if (auto program = compiled(&GlPrograms::snow); !program) return Error{program.error()};
   const auto copy = [](GrowingBuffer& to, const std::vector<std::int32_t>& table) -> Status {
     if (Status status = to.reserve(std::int64_t(table.size()) * kCellBytes); !status) return status;
     if (!table.empty()) glNamedBufferSubData(to.name(), 0, std::int64_t(table.size()) * kCellBytes, table.data());
@@ -92,11 +97,12 @@ Status GlStages::reserve(const TickTables& tick) {
     largest.domain_cells = std::max(largest.domain_cells, step.domain_cells);
     largest.mask_words = std::max(largest.mask_words, step.mask_words);
     largest.row_chunks = std::max(largest.row_chunks, step.row_chunks);
+    largest.push_blocks.count = std::max(largest.push_blocks.count, step.push_blocks.count);
   }
   const SlopeRule slopes = tick.parameters.slopes;
   const bool iterative = tick.parameters.displacement == Displacement::iterative;
   const bool flooded = tick.parameters.nearest != NearestSearch::exact;
-  const bool compacts = tick.parameters.materials[0].compression_q16 > 0;
+  const bool compacts = anyCompression(tick.parameters);
   const bool in_turns = slopes != SlopeRule::exchange || schedule_ == RelaxSchedule::fused;
   const std::int64_t plane_bytes = tiles * rules::kTileCells * kCellBytes;
   const std::int64_t domain_bytes = largest.domain_cells * kCellBytes;
@@ -112,6 +118,9 @@ Status GlStages::reserve(const TickTables& tick) {
       {&underside_, plane_bytes},
       {&underside_before_, plane_bytes},
       {&compacted_, compacts ? plane_bytes : 0},
+      {&material_, tick.mixed ? plane_bytes / 4 : 0},
+      {&push_x_, largest.push_blocks.count > 0 ? plane_bytes : 0},
+      {&push_y_, largest.push_blocks.count > 0 ? plane_bytes : 0},
       {&tile_states_, tiles * std::int64_t(sizeof(rules::TileState))},
       {&overlap_, domain_bytes},
       {&free_mask_, largest.mask_words * kCellBytes},
@@ -169,13 +178,23 @@ void GlStages::bindCells(const TickTables& tick) const {
   underside_.bind(rules::kBindUnderside);
 }
 
+void GlStages::bindMaterials(const TickTables& tick, int binding) const {
+  glBindBufferRange(GL_UNIFORM_BUFFER, rules::kBindMaterials, upload_.name(), tick.materials.offset,
+                    tick.materials.bytes);
+  if (tick.mixed) material_.bind(binding);
+}
+
 void GlStages::gather(const TickTables& tick, const TilePool& pool) {
   bindCells(tick);
   pool.height().bind(rules::kBindPoolHeight);
   pool.bedrock().bind(rules::kBindPoolBedrock);
-  if (tick.parameters.materials[0].compression_q16 > 0) {
+  if (anyCompression(tick.parameters)) {
     compacted_.bind(rules::kBindCompacted);
     pool.compacted().bind(rules::kBindPoolCompacted);
+  }
+  if (tick.mixed) {
+    material_.bind(rules::kBindMaterial);
+    pool.material().bind(rules::kBindPoolMaterial);
   }
   use(*chosen_.gather);
   dispatch(tick.gather);
@@ -183,12 +202,21 @@ void GlStages::gather(const TickTables& tick, const TilePool& pool) {
 
 void GlStages::depth(const TickTables& tick, int i) {
   const SubStepTables& step = i == kStood ? tick.stood : tick.sub_steps[std::size_t(i)];
+  beginUndersides(tick, step);
+  if (step.primitives.count > 0) drawBodies(tick, i);
+  findCeilings(tick, step);
+}
+
+/// Keeps the undersides of a sub-step's tiles aside and takes them away, but for the world's border.
+void GlStages::beginUndersides(const TickTables& tick, const SubStepTables& step) {
   bindCells(tick);
   underside_before_.bind(rules::kBindUndersideBefore);
   use(*chosen_.cover);
   setUniform(2, step.first_step);
   dispatch(step.cover);
-  if (step.primitives.count > 0) drawBodies(tick, i);
+}
+
+void GlStages::findCeilings(const TickTables& tick, const SubStepTables& step) {
   use(*chosen_.ceiling);
   setUniform(2, step.first_step);
   setUniform(3, tick.parameters.frustum_height_q);
@@ -217,7 +245,7 @@ void GlStages::hash(const TickTables& tick, const TilePool& pool) {
   pool.height().bind(rules::kBindPoolHeight);
   results_.bind(rules::kBindResults);
   staging_.bind(rules::kBindStaging);
-  if (tick.parameters.materials[0].compression_q16 > 0) {
+  if (anyCompression(tick.parameters)) {
     compacted_.bind(rules::kBindCompacted);
     pool.compacted().bind(rules::kBindPoolCompacted);
   }
@@ -233,6 +261,8 @@ std::vector<BufferBytes> GlStages::buffers() const {
           {"bedrock", bytes(bedrock_)},
           {"undersides (2)", bytes(underside_, underside_before_)},
           {"compacted soil", bytes(compacted_)},
+          {"materials", bytes(material_)},
+          {"pushes (2)", bytes(push_x_, push_y_)},
           {"states of tiles", bytes(tile_states_)},
           {"overlap, in domains", bytes(overlap_, free_mask_)},
           {"exact search, in domains", bytes(nearest_row_)},

@@ -19,16 +19,18 @@ class GlStages {
   /// Throws std::runtime_error where a shader of the default methods does not compile or link.
   GlStages(const GlLimits& limits, const GroupShape& shape, RelaxSchedule schedule, bool skip_settled);
 
-  /// Copies a pack's meshes to the device, and compiles stage craters where there may be any, as no tick should wait
-  /// for that. Errors: too large for the device; it does not compile.
-  [[nodiscard]] Status load(const MeshTable& meshes, bool with_craters = false);
+  /// Copies a pack's meshes to the device, and compiles what craters and snow need where there may be any, as no tick
+  /// should wait for that. Errors: too large for the device; it does not compile.
+  [[nodiscard]] Status load(const MeshTable& meshes, bool with_craters = false, bool with_snow = false);
 
   /// Makes room for a tick and copies its tables to the device. Errors: the device has not the memory; a shader of the
   /// tick's methods does not compile.
   [[nodiscard]] Status begin(const TickTables& tick);
 
   // The tick's stages, in order; those with `i` for every sub-step.
-  /// Of tiles in the pool; only where the tick's tables have such.
+  /// Stage craters first lets snow fall on tiles in the pool. Errors: as begin().
+  [[nodiscard]] Status snow(const TickTables& tick, const TilePool& pool);
+  /// Then it deforms tiles in the pool; only where the tick's tables have such.
   /// @param craters  those of this tick too, from `first_new` on; the table holds them
   /// @param cell_q   side of a cell
   /// Errors: as begin().
@@ -41,6 +43,7 @@ class GlStages {
   void penetration(const TickTables& tick, int i);
   void nearest(const TickTables& tick, int i);
   void displace(const TickTables& tick, int i);
+  /// With what bodies push soil, for drift.
   void relax(const TickTables& tick, int i);
   /// Results, staging and the pool's new heights.
   void hash(const TickTables& tick, const TilePool& pool);
@@ -65,7 +68,7 @@ class GlStages {
   const GrowingBuffer& compacted() const { return compacted_; }
 
  private:
-  Result<const GlProgram*> craterProgram();
+  Result<const GlProgram*> compiled(const GlProgram& (GlPrograms::*program)());
   Status reserve(const TickTables& tick);
   static void setUniform(int location, int value) { glUniform1i(location, value); }
   static std::int64_t listOffset(const TickTables& tick, int list, std::size_t member);
@@ -74,6 +77,9 @@ class GlStages {
   void dispatchListed(std::int64_t arguments);
   void bindTable(int binding, const TableRange& range) const;
   void bindCells(const TickTables& tick) const;
+  void bindMaterials(const TickTables& tick, int binding = rules::kBindMaterial) const;
+  void beginUndersides(const TickTables& tick, const SubStepTables& step);
+  void findCeilings(const TickTables& tick, const SubStepTables& step);
   void drawBodies(const TickTables& tick, int i);
   void search(const TickTables& tick, int i);
   void dispatchWholes(const TickTables& tick, int i, int round);
@@ -85,6 +91,8 @@ class GlStages {
   int nextHeights(const TickTables& tick, int turns) const;
   void clearNextHeights(const TickTables& tick);
   void sweepSlopes(const TickTables& tick);
+  void push(const TickTables& tick, const SubStepTables& step);
+  void sweepDrift(const TickTables& tick, int sweep, bool pushes);
 
   RelaxSchedule schedule_;
   bool skip_settled_;
@@ -95,7 +103,7 @@ class GlStages {
   TickPrograms chosen_;  // by the present tick
   GrowingBuffer upload_, vertices_, indices_, points_, large_;
   GrowingBuffer height_[3];  // others than the first only where sweeps take turns
-  GrowingBuffer bedrock_, underside_, underside_before_, compacted_, tile_states_;
+  GrowingBuffer bedrock_, underside_, underside_before_, compacted_, material_, push_x_, push_y_, tile_states_;
   GrowingBuffer overlap_, free_mask_, nearest_row_, target_, row_chunks_, receivers_;
   GrowingBuffer requested_low_, requested_high_, granted_;
   GrowingBuffer flood_, carried_[2], offered_, room_, amounts_;

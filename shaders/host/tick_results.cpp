@@ -8,7 +8,8 @@ std::uint64_t joined(const rules::uint (&halves)[2]) { return halves[0] + (std::
 }  // namespace
 
 std::uint64_t hashOf(const rules::TileResult& result, const Tile& tile, bool compacts) {
-  const std::uint64_t hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
+  std::uint64_t hash = joined(result.hash_low) + (joined(result.hash_high) << 32);
+  hash += planeHash(tile.at, Plane::material, tile.material());  // which no tick changes
   // What was compacted in earlier ticks is on the device only where this one compacts.
   return compacts ? hash : hash + planeHash(tile.at, Plane::compacted, tile.compacted());
 }

@@ -16,7 +16,9 @@ constexpr int kSize = rules::kTileSize;
 static_assert(sizeof(rules::TileEntry) == 56 && sizeof(rules::TileState) == 64 && sizeof(rules::Block) == 12);
 static_assert(sizeof(rules::RowChunk) == 12 && sizeof(rules::BodyEntry) == 108 && sizeof(rules::DomainEntry) == 44);
 static_assert(sizeof(rules::TileResult) == 56 && sizeof(rules::GroupCount) == 16 && sizeof(rules::RoundLists) == 64);
-static_assert(sizeof(rules::TickHead) == 56 && sizeof(rules::CraterTile) == 40);
+static_assert(sizeof(rules::TickHead) == 40 && sizeof(rules::CraterTile) == 40);
+static_assert(sizeof(rules::SnowTile) == 20 && sizeof(rules::SnowLayer) == 36 && sizeof(rules::Push) == 24);
+static_assert(sizeof(rules::MaterialEntry) == 32 && rules::kMaterialsMost == kMaterialsLimit);
 
 /// Collects tables as bytes.
 class TableWriter {
@@ -64,10 +66,12 @@ class TableMaker {
         writer_(tables_.bytes),
         count_(int(plan.active.size())) {}
 
-  TickTables make(std::span<const int> slots, std::span<const CellBox> cratered) {
+  TickTables make(std::span<const int> slots, const TileEvents& events) {
     for (int i = 0; i < count_; ++i) tables_.tile_index.push_back(shape_.reversed ? count_ - 1 - i : i);
     putTiles(slots);
-    putCraters(slots, cratered);
+    putMaterials();
+    putSnow(slots, events);
+    putCraters(slots, events.cratered);
     const std::int64_t tiles = count_;
     tables_.gather = writer_.dispatch(tiles * (rules::kTileCells / 4 / rules::kGatherQuads / shape_.group), shape_);
     tables_.exchange = writer_.dispatch(groupsFor(tiles * kSize / 4, shape_.group), shape_);
@@ -85,6 +89,7 @@ class TableMaker {
       sweep += sub_step.sweep_count;
     }
     putHead();
+    tables_.tick = plan_.tick;
     tables_.parameters = plan_.parameters;
     return std::move(tables_);
   }
@@ -112,6 +117,57 @@ class TableMaker {
     tables_.tiles = writer_.put(entries_);
   }
 
+  void putMaterials() {
+    const DriftSweep drift = driftSweep(pack_, plan_.parameters);
+    tables_.drift = drift.step;
+    tables_.mixed = plan_.parameters.materials.size() > 1;
+    std::vector<rules::MaterialEntry> entries(rules::kMaterialsMost);
+    for (std::size_t i = 0; i < plan_.parameters.materials.size(); ++i) {
+      const MaterialRules& own = plan_.parameters.materials[i];
+      rules::MaterialEntry& entry = entries[i];
+      entry = {own.slope_threshold_q,
+               own.diagonal_threshold_q,
+               own.roughness_q16,
+               own.compression_q16,
+               own.compaction_limit_q16,
+               own.friction_inverse_q32,
+               0,
+               0};
+      if (plan_.parameters.slopes == SlopeRule::exchange) {
+        entry.slope_threshold = rules::exchangeThreshold(own.slope_threshold_q);
+        entry.diagonal_threshold = rules::exchangeThreshold(own.diagonal_threshold_q);
+      } else if (plan_.parameters.slopes == SlopeRule::drift) {
+        entry.slope_threshold = drift.materials[i].rest;
+        entry.diagonal_threshold = std::int32_t(drift.materials[i].inverse);
+        entry.roughness = drift.materials[i].rate;
+      }
+    }
+    tables_.materials = writer_.put(entries);
+  }
+
+  void putSnow(std::span<const int> slots, const TileEvents& events) {
+    std::vector<rules::SnowTile> tiles;
+    std::vector<rules::SnowLayer> layers;
+    for (std::size_t i = 0; i < events.snowed.size(); ++i) {
+      if (events.snowed[i] == 0) continue;
+      const TileCoordinate at = plan_.active[i];
+      rules::SnowTile& tile = tiles.emplace_back(slots[i], at.x * kSize, at.y * kSize, int(layers.size()), 0);
+      for (const Snowfall& snowfall : events.snowfalls) {
+        if (!snowfall.area.meets(cellsOf(at))) continue;
+        const rules::SnowDepth before = snowDepth(snowfall, at, plan_.tick - rules::kSnowBeat);
+        const rules::SnowDepth after = snowDepth(snowfall, at, plan_.tick);
+        layers.push_back({snowfall.area.x0, snowfall.area.y0, snowfall.area.x1, snowfall.area.y1, snowfall.seed,
+                          before.layers, before.share, after.layers, after.share});
+      }
+      tile.end_layer = int(layers.size());
+    }
+    if (tiles.empty()) return;
+    tables_.snow.tiles = writer_.put(tiles);
+    tables_.snow.layers = writer_.put(layers);
+    tables_.snow.groups = writer_.dispatch(
+        std::int64_t(tiles.size()) * (rules::kTileCells / rules::kSnowLaneCells / shape_.group), shape_);
+  }
+
   void putCraters(std::span<const int> slots, std::span<const CellBox> cratered) {
     CraterTables& craters = tables_.craters;
     for (std::size_t i = 0; i < cratered.size(); ++i) {
@@ -135,6 +191,7 @@ class TableMaker {
     step.sweep_count = sub_step.sweep_count;
     putDomains(sub_step, step);
     putBodies(sub_step, step);
+    putPushes(sub_step, step);
     return step;
   }
 
@@ -201,9 +258,11 @@ class TableMaker {
   void putBodies(const SubStep& sub_step, SubStepTables& step) {
     std::vector<rules::BodyEntry> bodies;
     std::vector<rules::Block> place, primitives;
+    entry_of_body_.clear();
     for (std::size_t i = 0; i < sub_step.bodies.size(); ++i) {
+      entry_of_body_.push_back(-1);
       if (domain_of_body_[i] < 0) continue;
-      const int index = int(bodies.size());
+      const int index = entry_of_body_.back() = int(bodies.size());
       const rules::BodyEntry& entry =
           bodies.emplace_back(bodyEntry(sub_step.bodies[i], domain_of_body_[i], int(step.point_count)));
       for (int first = 0; first < entry.vertex_count; first += shape_.group) place.push_back({index, first, 0});
@@ -215,6 +274,24 @@ class TableMaker {
     step.bodies = writer_.put(bodies);
     step.place = writer_.dispatch(place, shape_);
     step.primitives = writer_.dispatch(primitives, shape_);
+  }
+
+  void putPushes(const SubStep& sub_step, SubStepTables& step) {
+    if (!anyPush(sub_step, plan_.parameters)) return;
+    std::vector<rules::Push> pushes;
+    std::vector<rules::Block> blocks;
+    for (std::size_t i = 0; i < sub_step.bodies.size(); ++i) {
+      const PlacedBody& body = sub_step.bodies[i];
+      if (entry_of_body_[i] < 0 || body.force_cell == 0) continue;
+      const int index = int(pushes.size());
+      pushes.push_back({entry_of_body_[i], rules::uint(body.force_cell), rules::uint(body.force_cell >> 32),
+                        body.direction_x_q30, body.direction_y_q30, 0});
+      for (int y = 0; y < body.box.y1 - body.box.y0; y += rules::kMaskRows)
+        for (int x = 0; x < groupsFor(body.box.x1 - body.box.x0, shape_.group); ++x) blocks.push_back({index, x, y});
+    }
+    step.pushes = writer_.put(pushes);
+    step.push_blocks = writer_.dispatch(blocks, shape_);
+    step.push_limit = pushLimit(sub_step);
   }
 
   rules::BodyEntry bodyEntry(const PlacedBody& body, int domain, int first_point) const {
@@ -256,10 +333,6 @@ class TableMaker {
     rules::TickHead head{};
     head.tile_count = count_;
     head.obstacle_threshold = plan_.parameters.obstacle_threshold_q;
-    head.slope_threshold = rules::exchangeThreshold(plan_.parameters.materials[0].slope_threshold_q);
-    head.diagonal_threshold = rules::exchangeThreshold(plan_.parameters.materials[0].diagonal_threshold_q);
-    head.compression = plan_.parameters.materials[0].compression_q16;
-    head.compaction_limit = plan_.parameters.materials[0].compaction_limit_q16;
     head.penetration_divider = plan_.parameters.penetration_divider_q;
     head.spread_cells = plan_.parameters.spread_cells;
     head.highest = -rules::kHeightLimit;
@@ -289,7 +362,7 @@ class TableMaker {
   bool border_covered_ = false;
   std::vector<rules::TileEntry> entries_;
   std::vector<std::uint8_t> covered_before_;
-  std::vector<int> domain_of_body_;
+  std::vector<int> domain_of_body_, entry_of_body_;  // of the sub-step; -1: none
 };
 
 }  // namespace
@@ -312,11 +385,13 @@ MeshTable makeMeshTable(const ScenePack& pack) {
 
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
                           std::span<const int> slots, std::int32_t highest, const GroupShape& shape,
-                          std::span<const CellBox> cratered) {
-  TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots, cratered);
+                          const TileEvents& events) {
+  TickTables tables = TableMaker(pack, meshes, plan, shape).make(slots, events);
   // No crater lifts a cell by more: rim, depth and noise as large as both.
   constexpr std::int32_t kRaiseMost = 3 * rules::kCraterHeightLimit;
-  if (!tables.craters.tiles.empty()) highest = std::min(highest + kRaiseMost, rules::kHeightLimit);
+  std::int64_t raised = tables.craters.tiles.empty() ? 0 : kRaiseMost;
+  if (tables.snow.groups.count > 0) raised += kSnowfallsLimit * ((kSnowRateLimit >> 32) * rules::kSnowBeat + 1);
+  highest = std::int32_t(std::min<std::int64_t>(highest + raised, rules::kHeightLimit));
   tables.beneath = highest + plan.parameters.obstacle_threshold_q >= rules::kNoUnderside;
   for (const SubStepTables& step : tables.sub_steps) tables.beneath |= step.cover.count > 0;
   return tables;

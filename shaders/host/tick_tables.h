@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "shaders/sim/tables.h"
-#include "shared/sim/plan.h"
+#include "shared/sim/drift.h"
 
 namespace spoor {
 
@@ -46,6 +46,9 @@ struct SubStepTables {
   TableRange bodies, domains, domain_tiles;
   int first_list = 0;  // of RoundLists; one for each round
   GroupList cover, place, primitives, domain_blocks;
+  TableRange pushes;      // Push
+  GroupList push_blocks;  // none where nothing pushes
+  int push_limit = 0;
   std::int64_t point_count = 0, primitive_count = 0, domain_cells = 0, mask_words = 0, row_chunks = 0;
   int longest_side = 0;  // of a domain, in cells
   int first_step = 0;    // of the relaxation
@@ -61,26 +64,43 @@ struct CraterTables {
   std::int64_t cells = 0;   // of all boxes
 };
 
+/// Tiles that take snow before the tick, in the plan's order.
+struct SnowTables {
+  TableRange tiles, layers;
+  GroupList groups;  // none where none does
+};
+
+/// What changes live tiles before a tick's stages: snow, then craters. Empty: nothing does.
+struct TileEvents {
+  std::span<const std::uint8_t> snowed;    // [plan.active] as ActiveTiles has it
+  std::span<const Snowfall> snowfalls;     // of the state
+  std::span<const CellBox> cratered = {};  // [plan.active] the same
+};
+
 /// Everything that the shaders need to know of a tick, in one piece of bytes.
 struct TickTables {
   std::vector<std::uint8_t> bytes;
+  std::int32_t tick = 0;
   Parameters parameters;
+  rules::DriftStep drift{};
   TableRange head;  // TickHead and RoundLists
   TableRange row_flags;
-  TableRange tiles;  // TileEntry [active tiles]
+  TableRange tiles;      // TileEntry [active tiles]
+  TableRange materials;  // MaterialEntry [kMaterialsMost]
+  SnowTables snow;
   CraterTables craters;
   GroupList gather, exchange, sweep, slope, hash;
   SubStepTables stood;  // where bodies stood before the tick: for depth only
   std::vector<SubStepTables> sub_steps;
+  bool mixed = false;           // are there several materials?
   bool beneath = false;         // may an underside, or the height limit, stop soil from coming somewhere?
   std::vector<int> tile_index;  // [plan.active] where the shaders have that tile
 };
 
-/// @param slots     [plan.active] of the tiles in the pool
-/// @param highest   no cell of the active tiles is higher before the tick
-/// @param cratered  [plan.active] what new craters meet (ActiveTiles); empty: they change no tile
+/// @param slots    [plan.active] of the tiles in the pool
+/// @param highest  no cell of the active tiles is higher before the tick
 TickTables makeTickTables(const ScenePack& pack, const MeshTable& meshes, const TickPlan& plan,
                           std::span<const int> slots, std::int32_t highest, const GroupShape& shape,
-                          std::span<const CellBox> cratered = {});
+                          const TileEvents& events = {});
 
 }  // namespace spoor

@@ -13,6 +13,17 @@ namespace {
 
 constexpr std::int64_t kPlaneBytes = sizeof(PlaneCells);
 
+/// Numbers of four cells' materials in a word, the first in the low byte.
+using PackedMaterials = std::array<std::uint32_t, rules::kTileCells / 4>;
+
+PackedMaterials packedMaterials(const Tile& tile) {
+  PackedMaterials packed{};
+  if (tile.material() == nullptr) return packed;
+  for (std::size_t cell = 0; cell < rules::kTileCells; ++cell)
+    packed[cell / 4] |= std::uint32_t((*tile.material())[cell]) << (cell % 4 * 8);
+  return packed;
+}
+
 }  // namespace
 
 TilePool::TilePool(std::int64_t block_bytes, int tile_limit, std::function<void(const std::string&)> say)
@@ -21,11 +32,12 @@ TilePool::TilePool(std::int64_t block_bytes, int tile_limit, std::function<void(
       say_(std::move(say)),
       height_("the pool's heights", block_bytes, GrowingBuffer::Content::kept),
       bedrock_("the pool's bedrock", block_bytes, GrowingBuffer::Content::kept),
-      compacted_("the pool's compacted soil", block_bytes, GrowingBuffer::Content::kept) {
+      compacted_("the pool's compacted soil", block_bytes, GrowingBuffer::Content::kept),
+      material_("the pool's materials", block_bytes, GrowingBuffer::Content::kept) {
   SPOOR_ASSERT(std::size_t(most_slots_) >= kTickTilesLimit);
 }
 
-Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32_t tick, bool compacts) {
+Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32_t tick, const PoolPlanes& planes) {
   std::vector<int> slots(tiles.size(), -1), fresh;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     const auto found = slot_of_.find(tiles[i]);
@@ -47,8 +59,13 @@ Result<std::vector<int>> TilePool::hold(std::span<Tile* const> tiles, std::int32
     highest_ = std::max(highest_, kernels().highest(tile.height().data(), rules::kTileCells));
     return tile.height();
   });
-  copyToDevice(bedrock_, tiles, slots, std::move(fresh), [](const Tile& tile) { return *tile.bedrock; });
-  if (compacts)
+  copyToDevice(bedrock_, tiles, slots, fresh, [](const Tile& tile) { return *tile.bedrock; });
+  if (planes.material) {
+    const auto bytes = std::int64_t(slots_.size() * sizeof(PackedMaterials));
+    if (Status status = material_.reserve(bytes); !status) return Error{status.error()};
+    copyToDevice(material_, tiles, slots, std::move(fresh), packedMaterials);
+  }
+  if (planes.compacted)
     if (Status status = holdCompacted(tiles, slots); !status) return Error{status.error()};
   return slots;
 }
@@ -115,14 +132,21 @@ void TilePool::evict(int count, std::int32_t tick) {
   SPOOR_ASSERT(int(idle.size()) >= count);
   std::ranges::nth_element(idle, idle.begin() + (count - 1), {},
                            [&](int slot) { return slots_[std::size_t(slot)].used_at; });
-  for (int i = 0; i < count; ++i) {
-    Slot& slot = slots_[std::size_t(idle[std::size_t(i)])];
-    slot_of_.erase(slot.tile);
-    slot = {};
-    free_.push_back(idle[std::size_t(i)]);
-  }
+  for (int i = 0; i < count; ++i) release(idle[std::size_t(i)]);
   std::ranges::sort(free_, std::greater<>());
   evicted_count_ += count;
+}
+
+void TilePool::drop(std::span<Tile* const> tiles) {
+  for (const Tile* tile : tiles)
+    if (const auto found = slot_of_.find(tile); found != slot_of_.end()) release(found->second);
+  std::ranges::sort(free_, std::greater<>());
+}
+
+void TilePool::release(int slot) {
+  slot_of_.erase(slots_[std::size_t(slot)].tile);
+  slots_[std::size_t(slot)] = {};
+  free_.push_back(slot);
 }
 
 /// One copy for each stretch of slots that follow one another.
@@ -131,7 +155,8 @@ void TilePool::copyToDevice(const GrowingBuffer& to, std::span<Tile* const> tile
                             std::vector<int> fresh, PlaneOf planeOf) {
   constexpr std::size_t kTilesAtOnce = 256;
   std::ranges::sort(fresh, {}, [&](int i) { return slots[std::size_t(i)]; });
-  std::vector<PlaneCells> cells;
+  std::vector<decltype(planeOf(*tiles[0]))> cells;
+  constexpr auto kBytes = std::int64_t(sizeof(cells[0]));
   for (std::size_t begin = 0; begin < fresh.size();) {
     const int first_slot = slots[std::size_t(fresh[begin])];
     std::size_t end = begin;
@@ -140,8 +165,8 @@ void TilePool::copyToDevice(const GrowingBuffer& to, std::span<Tile* const> tile
       ++end;
     cells.resize(end - begin);
     for (std::size_t i = begin; i < end; ++i) cells[i - begin] = planeOf(*tiles[std::size_t(fresh[i])]);
-    const std::int64_t bytes = std::int64_t(cells.size()) * kPlaneBytes;
-    glNamedBufferSubData(to.name(), first_slot * kPlaneBytes, bytes, cells.data());
+    const std::int64_t bytes = std::int64_t(cells.size()) * kBytes;
+    glNamedBufferSubData(to.name(), first_slot * kBytes, bytes, cells.data());
     copied_bytes_ += bytes;
     begin = end;
   }

@@ -44,7 +44,7 @@ struct DriftStep {
 struct DriftNumbers {
   int rest;      // by slope: height difference that rests where this is the higher cell, >= 1; by displacement: the
                  // angle of repose as a share of a right angle in Q16
-  int rate;      // D * step in Q16, 0 .. 2^14
+  int rate;      // D * step in Q16, 0 .. 2^13
   uint inverse;  // by displacement: about 2^32 / (2^16 - rest)
 };
 

@@ -1,10 +1,11 @@
 // Stage relax: what both of its plain passes share. A lane takes the pairs that begin in four columns of a tile.
 // Software renderers run both sides of every branch and leave loops only: lanes go from one unsettled slab to the next,
-// rather than past the settled ones. SPOOR_PARITY is that of the pairs' first cells; SPOOR_BENEATH is 1 where bodies
-// may stand over active tiles.
+// rather than past the settled ones. SPOOR_PARITY is that of the pairs' first cells; SPOOR_SHIFT what lies between
+// a pair's columns; SPOOR_BENEATH is 1 where bodies may stand over active tiles.
 #ifndef SPOOR_SIM_EXCHANGE_GLSL
 #define SPOOR_SIM_EXCHANGE_GLSL
 #include "../rules/exchange.h"
+#include "materials.glsl"
 #include "tick.glsl"
 
 layout(std430, binding = kBindTiles) readonly buffer Tiles { TileEntry tiles[]; };
@@ -15,8 +16,7 @@ layout(std430, binding = kBindUnderside) readonly buffer Underside { ivec4 under
 layout(location = 2) uniform int relax_step;
 layout(location = 3) uniform int skip_settled;  // 0: visit every pair
 layout(location = 4) uniform int tile_count;
-layout(location = 5) uniform int threshold;
-layout(location = 6) uniform int obstacle_threshold;
+layout(location = 5) uniform int obstacle_threshold;
 
 const int kRowQuads = kTileSize / 4;
 const int kTileQuads = kTileCells / 4;
@@ -48,6 +48,16 @@ ivec4 undersides(Slab slab, int at) { return slab.ceiling < kNoUnderside ? under
 ivec4 roomsBeneath(ivec4 cells, ivec4 under) {
   return ivec4(roomBeneath(cells.x, under.x, obstacle_threshold), roomBeneath(cells.y, under.y, obstacle_threshold),
                roomBeneath(cells.z, under.z, obstacle_threshold), roomBeneath(cells.w, under.w, obstacle_threshold));
+}
+
+int thresholdOf(int number) {
+  return SPOOR_SHIFT == 0 ? materials[number].slope_threshold : materials[number].diagonal_threshold;
+}
+
+/// The largest height differences that rest where these four cells are the higher ones.
+ivec4 thresholdsOf(int quad) {
+  ivec4 own = materialsOf(quad);
+  return ivec4(thresholdOf(own.x), thresholdOf(own.y), thresholdOf(own.z), thresholdOf(own.w));
 }
 
 #endif

@@ -1,5 +1,5 @@
 // Stage relax: one matching of pairs (x, y) - (x + SPOOR_SHIFT, y + 1) of all active tiles; a shift of 0 is vertical, 1
-// and -1 are the diagonals. In: tiles, bedrock, underside. In and out: height, tile states.
+// and -1 are the diagonals. In: tiles, bedrock, underside, materials. In and out: height, tile states.
 // Twin: relax.cpp, exchangeAcross.
 #version 450 core
 #include "exchange.glsl"
@@ -40,12 +40,17 @@ bool exchangeQuad(int at, int above_at, int beside_at, Slab slab, Slab above_sla
   ivec4 soil_a = a - bedrock[at];
   ivec4 above = ivec4(0);
   ivec4 above_bedrock = ivec4(0);
+  ivec4 above_rest = ivec4(0);
   if (has_above) {
     above = height[above_at];
     above_bedrock = bedrock[above_at];
+    above_rest = thresholdsOf(above_at);
   }
   ivec4 b = partners(above, has_beside ? nearest(height[beside_at]) : 0);
   ivec4 soil_b = b - partners(above_bedrock, has_beside ? nearest(bedrock[beside_at]) : 0);
+  ivec4 rest_a = thresholdsOf(at);
+  ivec4 rest_b = rest_a;
+  if (SPOOR_MIXED != 0) rest_b = partners(above_rest, has_beside ? nearest(thresholdsOf(beside_at)) : 0);
   ivec4 room_a = ivec4(kHeightLimit);
   ivec4 room_b = room_a;
   if (beneath) {
@@ -53,10 +58,10 @@ bool exchangeQuad(int at, int above_at, int beside_at, Slab slab, Slab above_sla
     room_b = roomsBeneath(b, partners(undersides(above_slab, above_at),
                                       has_beside ? nearest(undersides(beside_slab, beside_at)) : kNoUnderside));
   }
-  ivec4 flow = ivec4(pairFlow(a.x, b.x, threshold, soil_a.x, soil_b.x, room_a.x, room_b.x),
-                     pairFlow(a.y, b.y, threshold, soil_a.y, soil_b.y, room_a.y, room_b.y),
-                     pairFlow(a.z, b.z, threshold, soil_a.z, soil_b.z, room_a.z, room_b.z),
-                     pairFlow(a.w, b.w, threshold, soil_a.w, soil_b.w, room_a.w, room_b.w));
+  ivec4 flow = ivec4(pairFlow(a.x, b.x, rest_a.x, rest_b.x, soil_a.x, soil_b.x, room_a.x, room_b.x),
+                     pairFlow(a.y, b.y, rest_a.y, rest_b.y, soil_a.y, soil_b.y, room_a.y, room_b.y),
+                     pairFlow(a.z, b.z, rest_a.z, rest_b.z, soil_a.z, soil_b.z, room_a.z, room_b.z),
+                     pairFlow(a.w, b.w, rest_a.w, rest_b.w, soil_a.w, soil_b.w, room_a.w, room_b.w));
   flow *= partners(ivec4(has_above ? 1 : 0), has_beside ? 1 : 0);
   if (flow == ivec4(0)) return false;
   height[at] = a - flow;

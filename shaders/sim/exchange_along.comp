@@ -1,5 +1,5 @@
 // Stage relax: one horizontal matching of all active tiles.
-// In: tiles, bedrock, underside. In and out: height, tile states. Twin: relax.cpp, exchangeAlong.
+// In: tiles, bedrock, underside, materials. In and out: height, tile states. Twin: relax.cpp, exchangeAlong.
 #version 450 core
 #include "exchange.glsl"
 
@@ -8,8 +8,9 @@ bool exchangeEven(int at, Slab slab, bool beneath) {
   ivec4 cells = height[at];
   ivec4 soil = cells - bedrock[at];
   ivec4 room = beneath ? roomsBeneath(cells, undersides(slab, at)) : ivec4(kHeightLimit);
-  int first = pairFlow(cells.x, cells.y, threshold, soil.x, soil.y, room.x, room.y);
-  int second = pairFlow(cells.z, cells.w, threshold, soil.z, soil.w, room.z, room.w);
+  ivec4 rest = thresholdsOf(at);
+  int first = pairFlow(cells.x, cells.y, rest.x, rest.y, soil.x, soil.y, room.x, room.y);
+  int second = pairFlow(cells.z, cells.w, rest.z, rest.w, soil.z, soil.w, room.z, room.w);
   if ((first | second) == 0) return false;
   height[at] = cells + ivec4(-first, first, -second, second);
   return true;
@@ -20,7 +21,8 @@ bool exchangeOdd(int at, int next_at, Slab slab, Slab next, bool beneath) {
   ivec4 cells = height[at];
   ivec4 soil = cells - bedrock[at];
   ivec4 room = beneath ? roomsBeneath(cells, undersides(slab, at)) : ivec4(kHeightLimit);
-  int inner = pairFlow(cells.y, cells.z, threshold, soil.y, soil.z, room.y, room.z);
+  ivec4 rest = thresholdsOf(at);
+  int inner = pairFlow(cells.y, cells.z, rest.y, rest.z, soil.y, soil.z, room.y, room.z);
   if (inner != 0) {
     height[at].y = cells.y - inner;
     height[at].z = cells.z + inner;
@@ -28,7 +30,8 @@ bool exchangeOdd(int at, int next_at, Slab slab, Slab next, bool beneath) {
   if (next.tile < 0) return inner != 0;
   int beyond = height[next_at].x;
   int beyond_room = beneath ? roomBeneath(beyond, undersides(next, next_at).x, obstacle_threshold) : kHeightLimit;
-  int outer = pairFlow(cells.w, beyond, threshold, soil.w, beyond - bedrock[next_at].x, room.w, beyond_room);
+  int outer = pairFlow(cells.w, beyond, rest.w, thresholdOf(materialOf(4 * next_at)), soil.w,
+                       beyond - bedrock[next_at].x, room.w, beyond_room);
   if (outer != 0) {
     height[at].w = cells.w - outer;
     height[next_at].x = beyond + outer;

@@ -1,5 +1,6 @@
 // Stage active: lays out the active tiles' cells side by side, as they are before the tick.
-// In: tiles, pool. Out: height, bedrock, tile states, tick.highest; where SPOOR_COMPACTS is 1, compacted.
+// In: tiles, pool. Out: height, bedrock, tile states, tick.highest; where SPOOR_COMPACTS is 1, compacted,
+// and where SPOOR_MIXED is 1, materials.
 // A group takes kGroup * 16 cells of a tile. Twin: WorkArea::gather.
 #version 450 core
 #include "tick.glsl"
@@ -13,6 +14,10 @@ layout(std430, binding = kBindPoolBedrock) readonly buffer PoolBedrock { ivec4 p
 #if SPOOR_COMPACTS
 layout(std430, binding = kBindCompacted) writeonly buffer Compacted { ivec4 compacted[]; };
 layout(std430, binding = kBindPoolCompacted) readonly buffer PoolCompacted { ivec4 pool_compacted[]; };
+#endif
+#if SPOOR_MIXED
+layout(std430, binding = kBindMaterial) writeonly buffer Material { uint material[]; };
+layout(std430, binding = kBindPoolMaterial) readonly buffer PoolMaterial { uint pool_material[]; };
 #endif
 
 const int kQuads = kTileCells / 4;
@@ -33,6 +38,9 @@ void main() {
     bedrock[tile * kQuads + quad] = pool_bedrock[tiles[tile].slot * kQuads + quad];
 #if SPOOR_COMPACTS
     compacted[tile * kQuads + quad] = pool_compacted[tiles[tile].slot * kQuads + quad];
+#endif
+#if SPOOR_MIXED
+    material[tile * kQuads + quad] = pool_material[tiles[tile].slot * kQuads + quad];
 #endif
     lane_highest = max(lane_highest, max(max(cells.x, cells.y), max(cells.z, cells.w)));
   }

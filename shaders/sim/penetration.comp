@@ -1,6 +1,6 @@
 // Stage penetration: which cells a body overlaps, and by how much; where SPOOR_COMPACTS is 1, presses a share of that
 // together in its place. Lists the rows that have any cell of at least least_listed.
-// In: blocks (owner: domain; x: chunk of columns; y: first row of 32), height, bedrock, undersides.
+// In: blocks (owner: domain; x: chunk of columns; y: first row of 32), height, bedrock, undersides, materials.
 // Out: overlap, free mask, row flags, row chunks, tick. In and out where it compacts: height, compacted. A lane takes
 // 32 cells of a column. Twin: penetration.cpp.
 #version 450 core
@@ -10,6 +10,8 @@
 
 layout(std430, binding = kBindBlocks) readonly buffer Blocks { Block blocks[]; };
 #if SPOOR_COMPACTS
+#define MATERIAL_BINDING kBindDomainMaterial
+#include "materials.glsl"
 layout(std430, binding = kBindHeight) buffer Height { int height[]; };
 layout(std430, binding = kBindCompacted) buffer Compacted { int compacted[]; };
 #else
@@ -39,7 +41,9 @@ void listRow(int domain, int row) {
 /// What is left of a penetrating cell's overlap once a share of it is pressed together.
 int press(int at, int value) {
 #if SPOOR_COMPACTS
-  int share = compactedShare(value, height[at] - bedrock[at], compacted[at], tick.compression, tick.compaction_limit);
+  int kind = materialOf(at);
+  int share = compactedShare(value, height[at] - bedrock[at], compacted[at], materials[kind].compression,
+                             materials[kind].compaction_limit);
   compacted[at] += share;
   height[at] -= share;
   return value - share;

@@ -1,8 +1,9 @@
-// Stage relax by the rules of rules/slope.h: what a lane, which takes a column of a slab, sees of the cells around it.
-// SPOOR_BENEATH is 1 where bodies may stand over active tiles.
+// Stage relax by the rules of rules/slope.h and rules/drift.h: what a lane, which takes a column of a slab, sees of the
+// cells around it. SPOOR_BENEATH is 1 where bodies may stand over active tiles.
 #ifndef SPOOR_SIM_SLOPE_GLSL
 #define SPOOR_SIM_SLOPE_GLSL
 #include "../rules/slope.h"
+#include "materials.glsl"
 #include "tick.glsl"
 
 layout(std430, binding = kBindTiles) readonly buffer Tiles { TileEntry tiles[]; };
@@ -11,10 +12,7 @@ layout(std430, binding = kBindHeight) readonly buffer Height { int height[]; };
 layout(std430, binding = kBindBedrock) readonly buffer Bedrock { int bedrock[]; };
 layout(std430, binding = kBindUnderside) readonly buffer Underside { int underside[]; };
 layout(location = 2) uniform int tile_count;
-layout(location = 3) uniform int slope_threshold;
-layout(location = 4) uniform int diagonal_threshold;
-layout(location = 5) uniform int roughness;
-layout(location = 6) uniform int obstacle_threshold;
+layout(location = 3) uniform int obstacle_threshold;
 
 /// Three cells of a row, x - 1, x and x + 1. Those that are not active hold no soil and take none.
 struct Row {
@@ -22,6 +20,7 @@ struct Row {
   ivec3 height;
   ivec3 soil;
   ivec3 room;
+  ivec3 kind;  // material
 };
 
 /// Slabs that hold three cells of a row: their tiles, and whether bodies may stand over them.
@@ -78,26 +77,29 @@ Row rowAt(int y) {
     row.height[i] = is_active ? cell : 0;
     row.soil[i] = is_active ? cell - bedrock[at] : 0;
     row.room[i] = is_active ? roomBeneath(cell, under, obstacle_threshold) : 0;
+    row.kind[i] = materialOf(at);
   }
   return row;
 }
 
-bool givesTo(int own_height, int height, int room) { return slopeGives(own_height - height, slope_threshold, room); }
+/// Does cell i of `from` give to cell j of `to`?
+bool givesTo(Row from, int i, Row to, int j) {
+  return slopeGives(from.height[i] - to.height[j], materials[from.kind[i]].slope_threshold, to.room[j]);
+}
 
-/// Those of three neighbours that a cell gives to: how many (x), and the sum of their drops (y).
-ivec2 receiversIn(int own_height, Row row, bool with_middle) {
+/// Those of three neighbours that the middle cell of `row` gives to: how many (x), and the sum of their drops (y).
+ivec2 receiversIn(Row row, Row neighbours, bool with_middle) {
   ivec2 found = ivec2(0);
   for (int i = 0; i < 3; ++i)
-    if ((i != 1 || with_middle) && givesTo(own_height, row.height[i], row.room[i]))
-      found += ivec2(1, min(own_height - row.height[i], kDifferenceMost));
+    if ((i != 1 || with_middle) && givesTo(row, 1, neighbours, i))
+      found += ivec2(1, min(row.height.y - neighbours.height[i], kDifferenceMost));
   return found;
 }
 
 /// What the middle cell of `row` gives each neighbour that it gives to.
 int amountOf(Row below, Row row, Row above) {
-  ivec2 receivers = receiversIn(row.height.y, below, true) + receiversIn(row.height.y, row, false) +
-                    receiversIn(row.height.y, above, true);
-  return slopeAmount(receivers.y, receivers.x, roughness, row.soil.y);
+  ivec2 receivers = receiversIn(row, below, true) + receiversIn(row, row, false) + receiversIn(row, above, true);
+  return slopeAmount(receivers.y, receivers.x, materials[row.kind.y].roughness, row.soil.y);
 }
 
 #endif

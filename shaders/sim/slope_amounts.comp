@@ -1,5 +1,6 @@
 // Stage relax, interleaved, first pass of a sweep: what each cell gives each neighbour that it gives to.
-// In: tiles, tile states, height, bedrock, underside. Out: amounts. A lane takes a column of a slab. Twin: slopes.cpp.
+// In: tiles, tile states, height, bedrock, underside, materials. Out: amounts. A lane takes a column of a slab. Twin:
+// slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 

@@ -1,5 +1,5 @@
 // Stage relax, interleaved, second pass of a sweep: every cell loses what it gives and gains what it is given.
-// In: tiles, tile states, height, underside, amounts. Out: next height. A lane takes a column of a slab.
+// In: tiles, tile states, height, underside, materials, amounts. Out: next height. A lane takes a column of a slab.
 // Twin: slopes.cpp.
 #version 450 core
 #include "slope.glsl"
@@ -12,9 +12,8 @@ int gainFrom(Row row, int amount, Row neighbours, bool with_middle) {
   int gain = 0;
   for (int i = 0; i < 3; ++i) {
     if (i == 1 && !with_middle || neighbours.at[i] < 0) continue;
-    if (givesTo(row.height.y, neighbours.height[i], neighbours.room[i])) gain -= slopeFlow(amount, neighbours.room[i]);
-    if (givesTo(neighbours.height[i], row.height.y, row.room.y))
-      gain += slopeFlow(amounts[neighbours.at[i]], row.room.y);
+    if (givesTo(row, 1, neighbours, i)) gain -= slopeFlow(amount, neighbours.room[i]);
+    if (givesTo(neighbours, i, row, 1)) gain += slopeFlow(amounts[neighbours.at[i]], row.room.y);
   }
   return gain;
 }

@@ -1,7 +1,7 @@
 // Stage relax, scatter: a sweep in one pass. Every cell adds itself, less what it gives, to its place in the next
-// plane, and what it gives to its neighbours' places. In: tiles, tile states, height, bedrock, underside. In and out:
-// next height, which is 0 before. Out: spare height, which is 0 afterwards. A lane takes a column of a slab. Twin:
-// slopes.cpp.
+// plane, and what it gives to its neighbours' places. In: tiles, tile states, height, bedrock, underside, materials.
+// In and out: next height, which is 0 before. Out: spare height, which is 0 afterwards. A lane takes a column of a
+// slab. Twin: slopes.cpp.
 #version 450 core
 #include "slope.glsl"
 
@@ -12,7 +12,7 @@ layout(std430, binding = kBindSpareHeight) writeonly buffer SpareHeight { int sp
 int giveTo(Row row, int amount, Row neighbours, bool with_middle) {
   int given = 0;
   for (int i = 0; i < 3; ++i) {
-    if (i == 1 && !with_middle || !givesTo(row.height.y, neighbours.height[i], neighbours.room[i])) continue;
+    if (i == 1 && !with_middle || !givesTo(row, 1, neighbours, i)) continue;
     int flow = slopeFlow(amount, neighbours.room[i]);
     if (flow == 0) continue;
     atomicAdd(next_height[neighbours.at[i]], flow);

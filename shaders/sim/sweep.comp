@@ -1,8 +1,9 @@
 // Stage relax: a whole sweep, all eight matchings, in one dispatch. A group takes 32 x 32 cells with a halo of 6: each
 // matching that goes a cell along x or y, six of the eight, spoils one more ring of the halo.
-// In: tiles, height, bedrock, underside. Out: next height, tile states. Twin: relax.cpp.
+// In: tiles, height, bedrock, underside, materials. Out: next height, tile states. Twin: relax.cpp.
 #version 450 core
 #include "../rules/exchange.h"
+#include "materials.glsl"
 #include "tick.glsl"
 
 layout(std430, binding = kBindTiles) readonly buffer Tiles { TileEntry tiles[]; };
@@ -21,6 +22,13 @@ shared bool skip;
 shared int cells[kSide * kSide];
 shared int floors[kSide * kSide];
 shared int ceilings[kSide * kSide];
+#if SPOOR_MIXED
+shared int kinds[kSide * kSide];  // materials
+
+int kindOf(int i) { return kinds[i]; }
+#else
+int kindOf(int i) { return 0; }
+#endif
 
 /// Has anything near the block changed in this sweep's two predecessors? If not, both height planes hold the result.
 bool settled(int tile, ivec2 block) {
@@ -46,14 +54,21 @@ void load(int tile, ivec2 block) {
     int at = max(near, 0) * kTileCells + y % kTileSize * kTileSize + x % kTileSize;
     cells[i] = near < 0 ? 0 : height[at];
     floors[i] = near < 0 ? 0 : bedrock[at];
+#if SPOOR_MIXED
+    kinds[i] = materialOf(at);
+#endif
     bool filled = near >= 0 && tile_states[near].ceiling[y % kTileSize / kSlabRows] < kNoUnderside;
     ceilings[i] = near < 0 ? -kHeightLimit : filled ? underside[at] : kNoUnderside;
   }
 }
 
-void exchange(int a, int b, int threshold) {
-  int flow = pairFlow(cells[a], cells[b], threshold, cells[a] - floors[a], cells[b] - floors[b],
-                      roomBeneath(cells[a], ceilings[a], tick.obstacle_threshold),
+int thresholdOf(int i, bool diagonal) {
+  return diagonal ? materials[kindOf(i)].diagonal_threshold : materials[kindOf(i)].slope_threshold;
+}
+
+void exchange(int a, int b, bool diagonal) {
+  int flow = pairFlow(cells[a], cells[b], thresholdOf(a, diagonal), thresholdOf(b, diagonal), cells[a] - floors[a],
+                      cells[b] - floors[b], roomBeneath(cells[a], ceilings[a], tick.obstacle_threshold),
                       roomBeneath(cells[b], ceilings[b], tick.obstacle_threshold));
   cells[a] -= flow;
   cells[b] += flow;
@@ -66,7 +81,7 @@ void runMatching(int matching) {
     for (int i = lane(); i < kSide * kSide / 2; i += kGroup) {
       int x = i % (kSide / 2) * 2 + parity;
       int a = i / (kSide / 2) * kSide + x;
-      if (x + 1 < kSide) exchange(a, a + 1, tick.slope_threshold);
+      if (x + 1 < kSide) exchange(a, a + 1, false);
     }
     return;
   }
@@ -75,7 +90,7 @@ void runMatching(int matching) {
     int x = i % kSide;
     int y = i / kSide * 2 + parity;
     if (y + 1 < kSide && x + shift >= 0 && x + shift < kSide)
-      exchange(y * kSide + x, (y + 1) * kSide + x + shift, shift == 0 ? tick.slope_threshold : tick.diagonal_threshold);
+      exchange(y * kSide + x, (y + 1) * kSide + x + shift, shift != 0);
   }
 }
 

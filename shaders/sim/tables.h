@@ -6,7 +6,7 @@
 
 SPOOR_RULES_BEGIN
 
-// Storage bindings; no shader uses more than 13 of them. Cells of tiles are indexed by active tile, those of domains by
+// Storage bindings; no shader uses more than 14 of them. Cells of tiles are indexed by active tile, those of domains by
 // DomainEntry::first_cell.
 RULE_CONST kBindTick = 0;            // Tick
 RULE_CONST kBindTiles = 1;           // TileEntry [active tiles]
@@ -44,17 +44,31 @@ RULE_CONST kBindRoom = 15;         // iterative: int [domain cells]: what a cell
 RULE_CONST kBindNextHeight = 6;    // relax: int [active tiles * kTileCells]: heights after a sweep
 RULE_CONST kBindAmounts = 9;       // relax: the same: what a cell gives each neighbour that it gives to
 RULE_CONST kBindSpareHeight = 10;  // relax: the same: heights after the next sweep
-RULE_CONST kBindCraterTiles = 2;   // craters: CraterTile [tiles that new ones change]
-RULE_CONST kBindCraterChanges = 3;   // craters: int: differences of these tiles' boxes, one after the other
-RULE_CONST kBindCraterSums = 4;      // craters: CraterSum [2 * the same cells]: without and with new craters
-RULE_CONST kBindCraterTable = 11;    // craters: the first of kCraterTableBuffers, up to 15
-RULE_CONST kBindPoolHeight = 9;      // craters, gather, hash: int [slots * kTileCells]: heights before this tick
-RULE_CONST kBindPoolBedrock = 10;    // craters, gather: the same
-RULE_CONST kBindResults = 11;        // hash: TileResult [active tiles]
-RULE_CONST kBindStaging = 12;        // hash: int: differences of all changed tiles' boxes, one after the other
-RULE_CONST kBindPoolCompacted = 13;  // gather, hash: as heights
+RULE_CONST kBindPushX = 11;    // push, drift: int [active tiles * kTileCells]: what bodies push with, then how far it
+RULE_CONST kBindPushY = 12;    // moves the soil (rules/drift.h)
+RULE_CONST kBindPushes = 10;   // push: Push [bodies that push]
+RULE_CONST kBindMaterial = 7;  // relax, push: uint [active tiles * kTileCells / 4]: numbers of the materials of four
+                               // cells, the first in the low byte; where there are several
+RULE_CONST kBindDomainMaterial = 10;  // penetration: the same
+RULE_CONST kBindSnowTiles = 2;        // snow: SnowTile [tiles in snow]
+RULE_CONST kBindSnowLayers = 3;       // snow: SnowLayer
+RULE_CONST kBindCraterTiles = 2;      // craters: CraterTile [tiles that new ones change]
+RULE_CONST kBindCraterChanges = 3;    // craters: int: differences of these tiles' boxes, one after the other
+RULE_CONST kBindCraterSums = 4;       // craters: CraterSum [2 * the same cells]: without and with new craters
+RULE_CONST kBindCraterTable = 11;     // craters: the first of kCraterTableBuffers, up to 15
+RULE_CONST kBindPoolHeight = 9;       // craters, gather, hash: int [slots * kTileCells]: heights before this tick
+RULE_CONST kBindPoolBedrock = 10;     // craters, gather: the same
+RULE_CONST kBindResults = 11;         // hash: TileResult [active tiles]
+RULE_CONST kBindStaging = 12;         // hash: int: differences of all changed tiles' boxes, one after the other
+RULE_CONST kBindPoolMaterial = 15;    // gather: uint, four cells in a word
+RULE_CONST kBindPoolCompacted = 13;   // gather, hash: as heights
 RULE_CONST kBindCompacted = 14;  // gather, penetration, hash: int [active tiles * kTileCells], where the tick compacts
 
+// Uniform bindings.
+RULE_CONST kBindMaterials = 0;  // MaterialEntry [kMaterialsMost]
+RULE_CONST kMaterialsMost = 16;
+
+RULE_CONST kSnowLaneCells = 4;           // cells of a tile that a lane of snow takes
 RULE_CONST kCraterLaneCells = 4;         // cells of a tile that a lane of craters takes
 RULE_CONST kCraterEntriesAtOnce = 4096;  // of a bucket, in one dispatch: a lane's loops must end (llvmpipe: 65 535)
 RULE_CONST kGatherQuads = 4;             // cells of a tile, in fours, that a lane gathers
@@ -90,11 +104,7 @@ struct RoundLists {
 struct TickHead {
   int tile_count;
   int obstacle_threshold;
-  int slope_threshold;  // of pair exchange
-  int diagonal_threshold;
-  int compression;  // from here on as in Parameters
-  int compaction_limit;
-  int penetration_divider;
+  int penetration_divider;  // from here on as in Parameters
   int spread_cells;
   // From here on written by the GPU.
   int highest;            // of all heights so far in this tick
@@ -103,6 +113,19 @@ struct TickHead {
   int staged_cells;
   uint kept_back_low;  // soil that found no room, of all sub-steps: 64 bits in two words
   uint kept_back_high;
+};
+
+/// The rules of a material, as the tick's slope rule wants them. No arrays: those of uniform blocks are laid out
+/// otherwise than C++ does.
+struct MaterialEntry {
+  int slope_threshold;     // drift: DriftNumbers::rest
+  int diagonal_threshold;  // drift: DriftNumbers::inverse
+  int roughness;           // drift: DriftNumbers::rate
+  int compression;         // from here on as in MaterialRules
+  int compaction_limit;
+  int friction_inverse;
+  int reserved_a;
+  int reserved_b;
 };
 
 /// An active tile.
@@ -126,6 +149,38 @@ struct CraterTile {
   int y1;
   int first_change;  // in kBindCraterChanges: the box's cells, row-major
   uint gained[2];    // written by the GPU: sums of the low and high 16 bits of the box's differences + 2^31
+};
+
+/// A tile that was live and awake before the tick and takes snow in it.
+struct SnowTile {
+  int slot;  // in the pool
+  int x0;    // its first cell
+  int y0;
+  int first_layer;  // SnowLayer: of each snowfall that it takes
+  int end_layer;
+};
+
+/// What a snowfall leaves on a tile between two beats (rules/snowfall.h).
+struct SnowLayer {
+  int x0;  // cells it falls on
+  int y0;
+  int x1;
+  int y1;
+  uint seed;
+  int layers_before;  // SnowDepth
+  uint share_before;
+  int layers;
+  uint share;
+};
+
+/// A body that pushes soil, in one sub-step.
+struct Push {
+  int body;        // BodyEntry
+  uint force_low;  // PlacedBody::force_cell: 64 bits in two words
+  uint force_high;
+  int direction_x;  // Q30
+  int direction_y;
+  int contacts;  // written by the GPU: cells that the body presses on
 };
 
 /// What the tick knows of an active tile's slabs.

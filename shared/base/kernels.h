@@ -38,11 +38,6 @@ struct SlopeRow {
   std::int32_t* push_y;
 };
 
-/// The numbers of a material in a tick, as the slope rules and drift want them: a column of SlopeRow's.
-struct SlopeNumbers {
-  std::int32_t threshold, diagonal_threshold, roughness, inverse;
-};
-
 /// The inner loops over rows of cells, compiled once per instruction set from kernels.inl; every set gives the same
 /// bits. Pointers are to int32 cells; `n` counts cells and may be 0. Thread-safe.
 struct Kernels {
@@ -77,11 +72,9 @@ struct Kernels {
   /// Stage relax: pairs (cells[2i], cells[2i + 1]), i < pair_count <= 32. One more cell than the pairs is read, so that
   /// the loop runs over neighbours instead of gathering pairs.
   bool (*exchangeWithin)(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& numbers);
-  /// Stage relax, the slope rules: n cells as they see them, into a SlopeRow's planes but for the amount, and pushes.
-  /// @param material  of each; nullptr: 0
-  /// @param numbers   [materials]
-  void (*slopeCells)(const ExchangeCells& cells, const std::int32_t* material, int n, const SlopeNumbers* numbers,
-                     int obstacle_threshold, const SlopeRow& row);
+  /// Stage relax, the slope rules: n cells as they see them, into a SlopeRow's planes.
+  void (*slopeCells)(const std::int32_t* height, const std::int32_t* bedrock, const std::int32_t* underside, int n,
+                     int obstacle_threshold, std::int32_t* height_there, std::int32_t* room, std::int32_t* soil);
   /// Amounts of the cells begin .. end - 1 of a row, out of it and the rows above and below; false: all are 0.
   bool (*slopeAmounts)(const SlopeRow& above, const SlopeRow& row, const SlopeRow& below, int begin, int end);
   /// Flows between a row and the one below. carry[i]: in, what came from the row above; out, what goes to the row

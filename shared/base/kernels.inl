@@ -209,30 +209,13 @@ bool exchangeWithin(const ExchangeCells& cells, int pair_count, const ExchangeNu
                                     : exchangeWithinOf<true, true>(cells, pair_count, numbers);
 }
 
-void slopeCells(const ExchangeCells& cells, const int32_t* material, int n, const SlopeNumbers* numbers,
-                int obstacle_threshold, const SlopeRow& row) {
-  const int32_t* height = cells.height;
-  const int32_t* underside = cells.underside;
-  const int32_t* bedrock = cells.bedrock;
-  int32_t* __restrict height_there = row.height;
-  int32_t* __restrict room = row.room;
-  int32_t* __restrict soil = row.soil;
+void slopeCells(const int32_t* height, const int32_t* bedrock, const int32_t* underside, int n, int obstacle_threshold,
+                int32_t* __restrict height_there, int32_t* __restrict room, int32_t* __restrict soil) {
   for (int i = 0; i < n; ++i) {
     const int32_t value = height[i];
     height_there[i] = value;
     room[i] = rules::roomBeneath(value, underside[i], obstacle_threshold);
     soil[i] = value - bedrock[i];
-  }
-  int32_t* __restrict threshold = row.threshold;
-  int32_t* __restrict diagonal = row.diagonal_threshold;
-  int32_t* __restrict roughness = row.roughness;
-  int32_t* __restrict amount = row.amount;
-  for (int i = 0; i < n; ++i) {
-    const SlopeNumbers& own = numbers[material == nullptr ? 0 : material[i]];
-    threshold[i] = own.threshold;
-    diagonal[i] = own.diagonal_threshold;
-    roughness[i] = own.roughness;
-    amount[i] = own.inverse;
   }
 }
 

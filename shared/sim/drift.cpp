@@ -47,7 +47,7 @@ DriftSweep driftSweep(const ScenePack& pack, const Parameters& parameters) {
   for (std::size_t i = 0; i < parameters.materials.size(); ++i) {
     const MaterialRules& own = parameters.materials[i];
     rules::DriftNumbers& numbers = sweep.materials[i];
-    numbers.rate = std::min(std::int32_t((std::int64_t(own.diffusion_q16) * step.step + (1 << 15)) >> 16), 1 << 14);
+    numbers.rate = std::min(std::int32_t((std::int64_t(own.diffusion_q16) * step.step + (1 << 15)) >> 16), 1 << 13);
     numbers.rest = rules::exchangeThreshold(step.weights == rules::kDriftBySlope ? own.slope_threshold_q : 1);
     if (!by_displacement) continue;
     numbers.rest = own.repose_q16;

@@ -43,6 +43,11 @@ struct Piece {
   std::size_t offset;  // in the area's planes
 };
 
+/// The numbers of a material in a tick, as SlopeRow has them.
+struct SlopeNumbers {
+  std::int32_t threshold, diagonal_threshold, roughness, inverse;
+};
+
 /// What a sweep needs besides the cells.
 struct SlopeSweep {
   std::array<SlopeNumbers, kMaterialsLimit> numbers;
@@ -74,6 +79,12 @@ class BlockSweep {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto plane = [&](int number) { return cells_[i].data() + kHalo + number * kRowCells; };
       rows_[i] = {plane(0), plane(1), plane(2), plane(3), plane(4), plane(5), plane(6), plane(7), plane(8)};
+      const SlopeNumbers& first = sweep.numbers.front();
+      std::fill_n(plane(3) - kHalo, kRowCells, first.inverse);
+      std::fill_n(plane(4) - kHalo, kRowCells, first.threshold);
+      std::fill_n(plane(5) - kHalo, kRowCells, first.diagonal_threshold);
+      std::fill_n(plane(6) - kHalo, kRowCells, first.roughness);
+      std::fill_n(plane(7) - kHalo, 2 * kRowCells, 0);
     }
     for (std::size_t i = 0; i < changes_.size(); ++i) changes_[i].fill(0);
   }
@@ -171,20 +182,27 @@ class BlockSweep {
     const SlopeRow& to = at(row);
     int known = 0;
     forEachPiece(row, kHalo, [&](const Piece& piece) { known += piece.count; });
-    if (known < block_.width + 2 * kHalo) cells_[std::size_t(row & 3)].fill(0);
+    if (known < block_.width + 2 * kHalo) std::fill_n(to.height - kHalo, 3 * kRowCells, 0);
     forEachPiece(row, kHalo, [&](const Piece& piece) {
       const int i = piece.x - block_.x0;
-      const SlopeRow there = {to.height + i,    to.room + i,      to.soil + i,
-                              to.amount + i,    to.threshold + i, to.diagonal_threshold + i,
-                              to.roughness + i, to.push_x + i,    to.push_y + i};
-      context_.kernels.slopeCells({area_.height.data() + piece.offset, area_.bedrock.data() + piece.offset,
-                                   area_.underside.data() + piece.offset, nullptr},
-                                  area_.material.empty() ? nullptr : area_.material.data() + piece.offset, piece.count,
-                                  sweep_.numbers.data(), context_.parameters.obstacle_threshold_q, there);
+      context_.kernels.slopeCells(area_.height.data() + piece.offset, area_.bedrock.data() + piece.offset,
+                                  area_.underside.data() + piece.offset, piece.count,
+                                  context_.parameters.obstacle_threshold_q, to.height + i, to.room + i, to.soil + i);
+      if (!area_.material.empty())
+        for (int cell = 0; cell < piece.count; ++cell)
+          setNumbers(to, i + cell, area_.material[piece.offset + std::size_t(cell)]);
       if (area_.push_x.empty()) return;
-      std::copy_n(area_.push_x.data() + piece.offset, piece.count, there.push_x);
-      std::copy_n(area_.push_y.data() + piece.offset, piece.count, there.push_y);
+      std::copy_n(area_.push_x.data() + piece.offset, piece.count, to.push_x + i);
+      std::copy_n(area_.push_y.data() + piece.offset, piece.count, to.push_y + i);
     });
+  }
+
+  void setNumbers(const SlopeRow& row, int cell, int material) const {
+    const SlopeNumbers& own = sweep_.numbers[std::size_t(material)];
+    row.amount[cell] = own.inverse;
+    row.threshold[cell] = own.threshold;
+    row.diagonal_threshold[cell] = own.diagonal_threshold;
+    row.roughness[cell] = own.roughness;
   }
 
   bool findAmounts(int row, int halo) {
@@ -214,8 +232,8 @@ class BlockSweep {
   WorkArea& area_;
   const SlopeSweep& sweep_;
   const Block& block_;
-  std::array<std::array<std::int32_t, SlopeRow::kPlanes * kRowCells>, 4> cells_{};  // of the last four rows
-  std::array<std::array<std::int32_t, kRowCells>, 4> changes_;                      // scatter: of the last rows
+  std::array<std::array<std::int32_t, SlopeRow::kPlanes * kRowCells>, 4> cells_;  // of the last four rows
+  std::array<std::array<std::int32_t, kRowCells>, 4> changes_;                    // scatter: of the last rows
   std::array<SlopeRow, 4> rows_;
 };
 

@@ -98,7 +98,7 @@ int driftSteps(const Parameters& parameters) {
       rate_q16 = -floorDiv(-rate_q16 * (2 * kOneQ16 - rules.repose_q16), kOneQ16 - rules.repose_q16);
     fastest_q16 = std::max(fastest_q16, rate_q16);
   }
-  const std::int64_t by_diffusion = -floorDiv(-4 * fastest_q16 * parameters.drift_step_q16, std::int64_t(1) << 32);
+  const std::int64_t by_diffusion = -floorDiv(-8 * fastest_q16 * parameters.drift_step_q16, std::int64_t(1) << 32);
   const std::int64_t by_time = -floorDiv(-std::int64_t(parameters.drift_step_q16), std::int64_t(kOneQ16));
   return int(std::max<std::int64_t>({by_diffusion, by_time, 1}));
 }

@@ -109,7 +109,8 @@ constexpr std::size_t parametersBytes(std::size_t material_count) { return 6 + 9
 bool anyCompression(const Parameters& parameters);
 
 /// Into how many equal steps a sweep of drift is split, so that each is stable by itself: over no edge does the flow
-/// grow by more than a quarter of what the difference of heights does, and no step is longer than a unit of time.
+/// grow by more than an eighth of what the difference of heights does, which keeps neighbours from swinging to and fro
+/// (a quarter would only just be stable), and no step is longer than a unit of time.
 /// By displacement the flow w(f) f grows up to (2 - a) / (1 - a) times as fast as f, a being the share of a right
 /// angle at which w begins.
 int driftSteps(const Parameters& parameters);

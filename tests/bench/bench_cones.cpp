@@ -17,9 +17,12 @@ struct ConeMaterial {
   double diffusion;
 };
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr ConeMaterial kMaterials[] = {{"mud", 0.4 * std::numbers::pi, 0.25}, {"pebbles", std::numbers::pi / 3, 0.9},
-                                       {"sand", std::numbers::pi / 4, 1},     {"snow", 50 * kDegree, 0.5},
-                                       {"dust", 40 * kDegree, 1},             {"gravel", 38 * kDegree, 0.9}};
+constexpr ConeMaterial kMaterials[] = {{"mud", 0.4 * std::numbers::pi, 0.25},
+                                       {"pebbles", std::numbers::pi / 3, 0.9},
+                                       {"sand", std::numbers::pi / 4, 1},
+                                       {"snow", 50 * kDegree, 0.5},
+                                       {"dust", 40 * kDegree, 1},
+                                       {"gravel", 38 * kDegree, 0.9}};
 
 struct ConeRule {
   const char* name;
@@ -90,10 +93,11 @@ void measureCone(const Settings& settings, const ConeMaterial& material, const C
       base.fillHeights(tile->at, dormant);
       for (int i = 0; i < rules::kTileCells; ++i) lies += tile->height()[std::size_t(i)] - dormant[std::size_t(i)];
     }
-    std::printf("  %-8s %-27s %6lld%s %9.1f ms  edge %+7.2f  flank %+7.2f deg  azimuth %.3f  shape %6.2f %%  volume %lld\n",
-                material.name, rule.name, static_cast<long long>(sweeps), at_rest ? " at rest" : "        ", relax_ms,
-                shape.edge_deg - resting_deg, shape.flank_deg - resting_deg, shape.azimuth_ratio,
-                100 * shape.shape_error, static_cast<long long>(lies - volume));
+    std::printf(
+        "  %-8s %-27s %6lld%s %9.1f ms  edge %+7.2f  flank %+7.2f deg  azimuth %.3f  shape %6.2f %%  volume %lld\n",
+        material.name, rule.name, static_cast<long long>(sweeps), at_rest ? " at rest" : "        ", relax_ms,
+        shape.edge_deg - resting_deg, shape.flank_deg - resting_deg, shape.azimuth_ratio, 100 * shape.shape_error,
+        static_cast<long long>(lies - volume));
     if (lies != volume || simulation.state().ledger.error() != 0)
       report.faults.push_back(std::string(material.name) + ", " + rule.name + ": the volume changed");
     if (at_rest) return;
@@ -103,10 +107,11 @@ void measureCone(const Settings& settings, const ConeMaterial& material, const C
 }  // namespace
 
 void measureCones(const Settings& settings, Report& report) {
-  std::printf("Cones twice as steep as they rest, 96 cells of 5 cm across, on level ground\n"
-              "  sweeps and time in stage relax; the steepest edge and the mean gradient less the angle of repose "
-              "(drift by displacement: less the\n  angle at which it lets soil rest); largest over smallest radius; "
-              "difference from a round cone; volume error, 0.1 mm * cells\n");
+  std::printf(
+      "Cones twice as steep as they rest, 96 cells of 5 cm across, on level ground\n"
+      "  sweeps and time in stage relax; the steepest edge and the mean gradient less the angle of repose "
+      "(drift by displacement: less the\n  angle at which it lets soil rest); largest over smallest radius; "
+      "difference from a round cone; volume error, 0.1 mm * cells\n");
   for (const ConeRule& rule : kRules)
     for (const ConeMaterial& material : kMaterials) measureCone(settings, material, rule, report);
   std::printf("\n");

@@ -31,14 +31,11 @@ class PileView {
         volume += at(x, y);
         sum_x += at(x, y) * (x - middle);
         sum_y += at(x, y) * (y - middle);
-        result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 1, 0, rules.slope_threshold_q) / slope);
-        result.steepest_excess =
-            std::max(result.steepest_excess, excess(x, y, 0, 1, rules.slope_threshold_q) / slope);
+        result.steepest_excess = std::max(result.steepest_excess, excess(x, y, 1, 0, rules.slope_threshold_q) / slope);
+        result.steepest_excess = std::max(result.steepest_excess, excess(x, y, 0, 1, rules.slope_threshold_q) / slope);
         for (const int dx : {1, -1})
-          result.steepest_excess =
-              std::max(result.steepest_excess, excess(x, y, dx, 1, rules.diagonal_threshold_q) /
-                                                   double(rules.diagonal_threshold_q));
+          result.steepest_excess = std::max(result.steepest_excess, excess(x, y, dx, 1, rules.diagonal_threshold_q) /
+                                                                        double(rules.diagonal_threshold_q));
       }
     const double radius = std::cbrt(3 * volume / (std::numbers::pi * slope));
     double difference = 0;

@@ -157,7 +157,8 @@ void addCone(const BenchScene& scene, const BaseTerrain& base, WorldState& state
   const std::int64_t slope_q = 2 * scene.pack.parameters.materials[0].slope_threshold_q;
   heapSoil(base, {middle - radius, middle - radius, middle + radius + 1, middle + radius + 1}, state,
            [&](std::int64_t x, std::int64_t y) {
-             const std::int64_t distance = isqrt(std::uint64_t((x - middle) * (x - middle) + (y - middle) * (y - middle)));
+             const std::int64_t distance =
+                 isqrt(std::uint64_t((x - middle) * (x - middle) + (y - middle) * (y - middle)));
              return std::int32_t(slope_q * std::max<std::int64_t>(radius - distance, 0));
            });
 }
