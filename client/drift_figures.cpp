@@ -76,7 +76,8 @@ Status drawDrift(const RenderSettings& asked, const BackendMaker& makeBackend, c
   constexpr std::pair<std::int32_t, const char*> kMoments[] = {
       {kTracksTicks, "_before"}, {kTracksTicks + 90, "_little"}, {kTracksTicks + 270, "_some"}, {kSnowTicks, "_after"}};
   for (const auto& [tick, moment] : kMoments)
-    if (const Status drawn = drawAt(snowed, tick, std::span(kTracks).first(1), settings, std::string("drift_snow") + moment, write);
+    if (const Status drawn =
+            drawAt(snowed, tick, std::span(kTracks).first(1), settings, std::string("drift_snow") + moment, write);
         !drawn)
       return drawn;
 

@@ -22,7 +22,8 @@ Mesh wheelMesh() {
   constexpr int kSegments = 96, kLugSegments = 8;
   constexpr double kLug_m = 0.012, kShoulder_m = 0.03;
   const double half_m = kWheelWidth_m / 2.0;
-  const double rings_m[] = {-half_m, -half_m + 0.03, -half_m + 0.05, -0.012, 0.012, half_m - 0.05, half_m - 0.03, half_m};
+  const double rings_m[] = {-half_m, -half_m + 0.03, -half_m + 0.05, -0.012,
+                            0.012,   half_m - 0.05,  half_m - 0.03,  half_m};
   constexpr int kRings = 8;
   Mesh mesh;
   mesh.name = "wheel";
@@ -33,8 +34,8 @@ Mesh wheelMesh() {
       const bool lug = (segment + half) % kLugSegments < kLugSegments / 2;
       const int inwards = std::min(ring, kRings - 1 - ring);  // from the shoulder, over its even edge, to the lugs
       const double radius_m = kWheelRadius_m - (inwards == 0 ? kShoulder_m : inwards == 1 || !lug ? kLug_m : 0.0);
-      mesh.vertices.push_back({lengthOf(radius_m * std::sin(angle)), lengthOf(rings_m[ring]),
-                               lengthOf(radius_m * std::cos(angle))});
+      mesh.vertices.push_back(
+          {lengthOf(radius_m * std::sin(angle)), lengthOf(rings_m[ring]), lengthOf(radius_m * std::cos(angle))});
     }
   }
   for (const double side : {-half_m, half_m}) mesh.vertices.push_back({0, lengthOf(side), 0});
@@ -45,7 +46,8 @@ Mesh wheelMesh() {
       mesh.triangles.push_back({at(segment, ring), at(segment + 1, ring + 1), at(segment + 1, ring)});
     }
     mesh.triangles.push_back({std::uint32_t(kSegments * kRings), at(segment, 0), at(segment + 1, 0)});
-    mesh.triangles.push_back({std::uint32_t(kSegments * kRings + 1), at(segment + 1, kRings - 1), at(segment, kRings - 1)});
+    mesh.triangles.push_back(
+        {std::uint32_t(kSegments * kRings + 1), at(segment + 1, kRings - 1), at(segment, kRings - 1)});
   }
   deriveEdges(mesh);
   return mesh;
@@ -61,7 +63,8 @@ Mesh ballMesh(double radius_m) {
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kAround;
       mesh.vertices.push_back({lengthOf(radius_m * std::sin(up) * std::cos(angle)),
-                               lengthOf(radius_m * std::sin(up) * std::sin(angle)), -lengthOf(radius_m * std::cos(up))});
+                               lengthOf(radius_m * std::sin(up) * std::sin(angle)),
+                               -lengthOf(radius_m * std::cos(up))});
     }
   }
   mesh.vertices.push_back({0, 0, lengthOf(radius_m)});
@@ -128,7 +131,8 @@ ScenePack fieldPack(const char* name, const std::vector<DriftMaterial>& material
   pack.width_cells = pack.height_cells = kSide_cells;
   pack.cell_q = kCell_q;
   pack.soil_depth_q = lengthOf(0.5);
-  pack.noise = {9, (std::int64_t(1) << 32) / 170, 3, -pack.soil_depth_q - lengthOf(0.12), -pack.soil_depth_q + lengthOf(0.12)};
+  pack.noise = {9, (std::int64_t(1) << 32) / 170, 3, -pack.soil_depth_q - lengthOf(0.12),
+                -pack.soil_depth_q + lengthOf(0.12)};
   Parameters& parameters = pack.parameters;
   parameters.slopes = SlopeRule::drift;
   parameters.sweeps_per_tick = 16;

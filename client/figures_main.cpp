@@ -224,10 +224,9 @@ Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
   if (!arguments.pack.empty()) return drawPack(arguments, settings);
   if (arguments.only == "craters") return drawCraters(arguments, settings);
   if (arguments.only == "drift")
-    return drawDrift(settings, [&] { return backendFor(arguments); },
-                     [&](const Renderer& renderer, const std::string& name) {
-                       return writePicture(renderer, arguments, name);
-                     });
+    return drawDrift(
+        settings, [&] { return backendFor(arguments); },
+        [&](const Renderer& renderer, const std::string& name) { return writePicture(renderer, arguments, name); });
   for (const DisplacementFigure& figure : kDisplacementFigures)
     if (arguments.only.empty() || arguments.only == figure.number)
       if (const Status drawn = drawDisplacement(arguments, settings, figure); !drawn) return drawn;
@@ -245,7 +244,9 @@ int run(int argc, char** argv) {
       "spoor-figures",
       "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
   options.add("out", "DIR", "where pictures go", &arguments.folder);
-  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind; drift: tracks in materials", &arguments.only);
+  options.add("only", "NUMBER",
+              "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind; drift: tracks in materials",
+              &arguments.only);
   options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);
   options.add("ticks", "COUNT", "after how many ticks; -1: the pack's own", &arguments.tick, -1, 1 << 30);
   options.add(

@@ -16,11 +16,12 @@ using glm::vec4;
 using render::MaterialLook;
 
 static_assert(int(MaterialTexture::grass) == render::kTextureGrass &&
-              int(MaterialTexture::pebbles) == render::kTexturePebbles && render::kTextureGrass + 1 == kMaterialTextureCount);
+              int(MaterialTexture::pebbles) == render::kTexturePebbles &&
+              render::kTextureGrass + 1 == kMaterialTextureCount);
 static_assert(render::kLooksLimit == kMaterialsLimit);
 
-// Where nothing else is said: the soil under the surface, and what shaders/render/ground_cover.glsl mixes dirt and grass
-// about.
+// Where nothing else is said: the soil under the surface, and what shaders/render/ground_cover.glsl mixes dirt and
+// grass about.
 constexpr vec3 kSoil(0.205f, 0.132f, 0.078f);
 constexpr vec3 kDirt(0.350f, 0.175f, 0.097f), kDirtSoil(0.170f, 0.082f, 0.046f);
 constexpr vec3 kGrass(0.090f, 0.140f, 0.035f);
@@ -55,6 +56,7 @@ MaterialLook lookOf(Ground ground) {
 }
 
 MaterialLook lookOf(const Material& material) {
+  if (material == ScenePack().materials.front()) return lookOf(Ground::snow);
   const vec3 colour(linear(material.colour[0]), linear(material.colour[1]), linear(material.colour[2]));
   MaterialLook look = lookOf(int(material.texture), colour, 0.55f * colour);
   switch (material.texture) {
@@ -84,7 +86,7 @@ MaterialLook lookOf(const Material& material) {
 }  // namespace
 
 std::vector<MaterialLook> looksOf(const ScenePack& pack, Ground ground) {
-  if (ground != Ground::scene || pack.materials == ScenePack().materials) return {lookOf(ground)};
+  if (ground != Ground::scene) return {lookOf(ground)};
   std::vector<MaterialLook> looks;
   for (const Material& material : pack.materials) looks.push_back(lookOf(material));
   return looks;

@@ -20,12 +20,8 @@ struct NamedGround {
   std::string_view name;
   Ground ground;
 };
-constexpr NamedGround kGrounds[] = {{"scene", Ground::scene},
-                                    {"snow", Ground::snow},
-                                    {"sand", Ground::sand},
-                                    {"mud", Ground::mud},
-                                    {"dirt", Ground::dirt},
-                                    {"grass", Ground::grass}};
+constexpr NamedGround kGrounds[] = {{"scene", Ground::scene}, {"snow", Ground::snow}, {"sand", Ground::sand},
+                                    {"mud", Ground::mud},     {"dirt", Ground::dirt}, {"grass", Ground::grass}};
 
 std::optional<int> sideOf(std::string_view text) {
   int value = 0;
@@ -39,7 +35,8 @@ std::optional<int> sideOf(std::string_view text) {
 
 void addPictureOptions(Options& options, PictureArguments& arguments) {
   options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
-  options.add("ground", "scene|snow|sand|mud|dirt|grass", "what all of the ground looks like; scene: as its materials say", &arguments.ground);
+  options.add("ground", "scene|snow|sand|mud|dirt|grass",
+              "what all of the ground looks like; scene: as its materials say", &arguments.ground);
   options.add("blur-normals", "PASSES", "of a 3 x 3 Gaussian over the ground's normals; -1: as the scene says",
               &arguments.blur_normals, -1, render::kBlurPassesLimit);
 }

@@ -30,9 +30,9 @@ struct RenderSettings {
   int blur_passes = -1;      // of the ground's normals, 0 .. 16; -1: as the pack says
   int patches_per_row = -1;  // of the ground's mesh, 0 .. 4096, see finePatchSamples; -1: as the pack says
   double triangle_px = 8.0;  // wanted side of a triangle on the screen
-  int tessellation = 0;      // into how many parts each side of a patch is cut, a power of two, as far as its samples go
-                             // [Gilardi et al.'s tessellation factor]; 0: as triangle_px asks for
-  double detail = 1.0;       // strength of the grain finer than a cell, 0 .. 1
+  int tessellation = 0;  // into how many parts each side of a patch is cut, a power of two, as far as its samples go
+                         // [Gilardi et al.'s tessellation factor]; 0: as triangle_px asks for
+  double detail = 1.0;   // strength of the grain finer than a cell, 0 .. 1
   Ground ground = Ground::scene;
   Shade shade = Shade::lit;
   ColumnSettings columns;
@@ -46,8 +46,9 @@ struct FrameTimes {
   double draw_ms = 0;     // all the rest
 };
 
-/// Draws a world: ground, bodies, sky. Dormant ground follows the snow that falls on it a little late (TerrainLevels). Needs a current GL 4.5 context for its whole life. Throws std::runtime_error
-/// where the driver lacks something or a shader is wrong.
+/// Draws a world: ground, bodies, sky. Dormant ground follows the snow that falls on it a little late (TerrainLevels).
+/// Needs a current GL 4.5 context for its whole life. Throws std::runtime_error where the driver lacks something or a
+/// shader is wrong.
 class Renderer {
  public:
   /// The pack must outlive this.
@@ -102,7 +103,7 @@ class Renderer {
   };
   const Programs& programs();
   std::array<Programs, 2> programs_;  // without and with cover maps, made when they are wanted
-  GlTexture colour_, depth_;  // multisampled: bodies and the depth of all
+  GlTexture colour_, depth_;          // multisampled: bodies and the depth of all
   GlRenderbuffer picture_colour_;
   GlFramebuffer target_, picture_;
 };

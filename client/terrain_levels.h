@@ -37,7 +37,8 @@ struct TerrainSettings {
   // passes blur by 2.8 cells (standard deviation), which is less than the four cells over which level 1 averages.
   int blur_passes = 0;
   bool materials = false;  // whether cells have materials that look different
-  // Stones that are cut out of the finest level near the eye: side, 0: none; how far they stand out; side of a triangle.
+  // Stones that are cut out of the finest level near the eye: side, 0: none; how far they stand out; side of a
+  // triangle.
   double stone_side_m = 0.0;
   double stone_height_m = 0.0;
   double stone_triangle_px = 4.0;
@@ -82,7 +83,8 @@ class TerrainLevels {
 
   const TerrainSettings& settings() const { return settings_; }
 
-  /// How far from the eye a camera's triangles are fine enough for stones [m]; 0: nowhere. Beyond, they are shaded only.
+  /// How far from the eye a camera's triangles are fine enough for stones [m]; 0: nowhere. Beyond, they are shaded
+  /// only.
   double stoneReach(const CameraFrame& camera) const;
 
   /// Distance from the focus that the coarsest window covers on every side, in cells.

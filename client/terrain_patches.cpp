@@ -114,7 +114,8 @@ void TerrainLevels::collectStonePatches(const CameraFrame& camera, std::vector<P
     for (int y = 0; y < kPerPage; ++y) {
       for (int x = 0; x < kPerPage; ++x) {
         const glm::ivec2 first = page * kPageSamples + glm::ivec2(x, y) * kStonePatchSamples;
-        if (!mayBeSeen(planes, corner(first, range.lowest_q), corner(first + kStonePatchSamples, range.highest_q + rise_q)))
+        if (!mayBeSeen(planes, corner(first, range.lowest_q),
+                       corner(first + kStonePatchSamples, range.highest_q + rise_q)))
           continue;
         const int border = (x == 0) | (y == 0) << 1 | (x == kPerPage - 1) << 2 | (y == kPerPage - 1) << 3;
         out.emplace_back(first, 0, kStonePatch | (border & alone) * kCellEdges);

@@ -26,8 +26,8 @@ CellBox pageCells(const ScenePack& pack, int level, glm::ivec2 page) {
 
 }  // namespace
 
-/// Snow by which a page differs from the view's: at most, 0.1 mm. Coarse pages hold tiles of every beat, so that snow of
-/// a whole beat may be missing in some of them until one after it has stopped.
+/// Snow by which a page differs from the view's, 0.1 mm, 0 only where by none. Coarse pages, with tiles of every beat,
+/// go by one tile's, and lack some until a beat after the snowfall's end.
 std::int32_t TerrainLevels::snowMissing(const TerrainView& view, int level, const Page& page) const {
   const std::int32_t now = view.state->tick;
   if (page.tick == now) return 0;
@@ -39,9 +39,10 @@ std::int32_t TerrainLevels::snowMissing(const TerrainView& view, int level, cons
   for (const Snowfall& snowfall : view.state->snowfalls) {
     if (!cells.empty() && !snowfall.area.meets(cells)) continue;
     const auto [from, to] = std::minmax(page.tick, now);
-    const rules::SnowDepth had = snowDepth(snowfall, tile, one_tile ? from : from - rules::kSnowBeat);
-    const rules::SnowDepth has = snowDepth(snowfall, tile, to);
-    if (had.layers != has.layers || had.share != has.share) missing_q += has.layers - had.layers + 1;
+    const rules::SnowDepth had = snowDepth(snowfall, tile, from), has = snowDepth(snowfall, tile, to);
+    const std::int32_t over = snowfall.last_tick + rules::kSnowBeat;
+    const bool lacks_last = !one_tile && from < over && to >= over;
+    if (lacks_last || had.layers != has.layers || had.share != has.share) missing_q += has.layers - had.layers + 1;
   }
   return missing_q;
 }

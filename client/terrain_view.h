@@ -24,10 +24,10 @@ struct SampleBox {
 
 /// Heights of a box of samples, row-major [count.x * count.y], 0.1 mm.
 /// Level 0 samples are cells. A sample of another level is dormant ground at the middle of its cells; in a live tile it
-/// is the base there plus the mean of what its cells gained or lost, by craters and snow too. Of levels coarser than a tile all
-/// is dormant ground.
-/// The ground beyond the world's border mirrors the dormant ground within, so that pictures reach the horizon.
-/// `box` is made of whole tiles where a tile has a sample at all. Thread-safe where nobody changes the state.
+/// is the base there plus the mean of what its cells gained or lost, by craters and snow too. Of levels coarser than a
+/// tile all is dormant ground. The ground beyond the world's border mirrors the dormant ground within, so that pictures
+/// reach the horizon. `box` is made of whole tiles where a tile has a sample at all. Thread-safe where nobody changes
+/// the state.
 void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::span<std::int32_t> height_q);
 
 /// Values of every `stride`-th cell from `first_cell` on, row-major [count.x * count.y], mirrored at the borders of a

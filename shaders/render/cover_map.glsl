@@ -1,7 +1,7 @@
 // What lies at a place, from the cover maps: shares of materials, and how much snow hides them. Materials blend over
 // about a cell, along borders that wander a little, so that no cell shows by itself.
 // Needs surface.glsl; SPOOR_COVER: 0 where there are no such maps.
-layout(binding = kFineCoverUnit) uniform usampler2D fine_cover;          // a sample: material, snow 0 .. 255
+layout(binding = kFineCoverUnit) uniform usampler2D fine_cover;  // a sample: material, snow 0 .. 255
 layout(binding = kCoarseCoverUnit) uniform usampler2DArray coarse_cover;
 layout(std140, binding = kLooksBinding) uniform LooksBlock { MaterialLook looks[kLooksLimit]; };
 
@@ -22,14 +22,15 @@ uvec2 coverSample(int level, ivec2 from_first) {
 }
 
 void addShare(inout Cover cover, int material, float share) {
-  for (int i = 0; i < cover.count; ++i) {
-    if (cover.material[i] != material) continue;
-    cover.share[i] += share;
-    return;
+  int slot = 0;
+  while (slot < cover.count && cover.material[slot] != material) ++slot;
+  if (slot == kCoverMost) return;
+  if (slot == cover.count) {
+    cover.material[slot] = material;
+    cover.share[slot] = 0.0;
+    ++cover.count;
   }
-  if (cover.count == kCoverMost) return;
-  cover.material[cover.count] = material;
-  cover.share[cover.count++] = share;
+  cover.share[slot] += share;
 }
 
 /// Adds one level's samples about a place, weighed by a quadratic B-spline: its borders have no corners of cells.
@@ -39,24 +40,13 @@ void addLevel(inout Cover cover, int level, vec2 rel_cells, float share) {
   ivec2 middle = ivec2(floor(at + 0.5));
   vec2 t = at - vec2(middle);
   vec2 weights[3] = vec2[3](0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t));
-  for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 3; ++x) {
-      uvec2 texel = coverSample(level, middle + ivec2(x - 1, y - 1));
-      float weight = share * weights[x].x * weights[y].y;
-      cover.snow += weight * float(texel.y) / 255.0;
-      addShare(cover, int(texel.x), weight);
-    }
+  for (int i = 0; i < 9; ++i) {
+    ivec2 which = ivec2(i % 3, i / 3);
+    uvec2 texel = coverSample(level, middle + which - 1);
+    float weight = share * weights[which.x].x * weights[which.y].y;
+    cover.snow += weight * float(texel.y) / 255.0;
+    addShare(cover, int(texel.x), weight);
   }
-}
-
-/// Makes borders narrower: the shares' squares.
-void sharpen(inout Cover cover) {
-  float sum = 0.0;
-  for (int i = 0; i < cover.count; ++i) {
-    cover.share[i] *= cover.share[i];
-    sum += cover.share[i];
-  }
-  for (int i = 0; i < cover.count; ++i) cover.share[i] /= max(sum, 1.0e-6);
 }
 
 Cover oneMaterial() {
@@ -76,13 +66,14 @@ Cover coverAt(vec2 rel_cells, float level, vec2 aside) {
   cover.count = 0;
   int lower = int(level);
   float part = level - float(lower);
-  addLevel(cover, lower, rel_cells + aside * float(1 << frame.levels[lower].window.w), 1.0 - part);
-  if (part > 0.0) addLevel(cover, lower + 1, rel_cells, part);
+  int last = part > 0.0 ? lower + 1 : lower;
+  for (int i = lower; i <= last; ++i)
+    addLevel(cover, i, rel_cells + (i == lower ? aside * float(1 << frame.levels[i].window.w) : vec2(0.0)),
+             i == lower ? 1.0 - part : part);
   if (frame.world.z == 0) {
     float snow = cover.snow;
     cover = oneMaterial();
     cover.snow = snow;
   }
-  sharpen(cover);
   return cover;
 }

@@ -28,8 +28,8 @@ RENDER_CONST kOcclusionReach = 6;    // samples looked at around a sample for th
 RENDER_CONST kBlurPassesLimit = 16;  // of the Gaussian over slopes; each reaches one sample further
 
 // Patch flags, one bit an edge in the order west, south, east, north.
-RENDER_CONST kRimEdges = 1;    // << edge: the edge lies on the window's border
-RENDER_CONST kHoleEdges = 16;  // << edge: the edge borders on the next finer window, or on finer patches
+RENDER_CONST kRimEdges = 1;      // << edge: the edge lies on the window's border
+RENDER_CONST kHoleEdges = 16;    // << edge: the edge borders on the next finer window, or on finer patches
 RENDER_CONST kStonePatch = 256;  // the patch has kStonePatchSamples a side and is cut finer than its cells
 RENDER_CONST kCellEdges = 512;   // << edge: an edge of such a patch that borders on others: a vertex a cell
 
@@ -49,7 +49,7 @@ RENDER_CONST kTextureGravel = 5;
 RENDER_CONST kTextureDust = 6;
 RENDER_CONST kTextureDirt = 7;
 RENDER_CONST kTextureGrass = 8;
-RENDER_CONST kLooksLimit = 16;        // materials of a pack
+RENDER_CONST kLooksLimit = 16;         // materials of a pack
 RENDER_CONST kStonePatchSamples = 16;  // side of a patch of level 0 that is cut finer than its cells, to show stones
 RENDER_CONST kStoneCuts = 4;           // of a cell's side there, at most
 
@@ -101,9 +101,9 @@ struct Frame {
 
 /// How the ground of a material looks.
 struct MaterialLook {
-  vec4 albedo;   // linear; w: how wet it is, 0 .. 1
-  vec4 soil;     // under its surface, linear
-  vec4 tint;     // of what its texture is drawn in; w: height of its grains [m]
+  vec4 albedo;         // linear; w: how wet it is, 0 .. 1
+  vec4 soil;           // under its surface, linear
+  vec4 tint;           // of what its texture is drawn in; w: height of its grains [m]
   ivec4 texture_kind;  // kTexture*; side of its grains, 0.1 mm, 0: none
 };
 

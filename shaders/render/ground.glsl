@@ -41,7 +41,7 @@ vec2 borderWander(ivec2 at, float footprint_cells) {
   int bits = findMSB(max(frame.place.x, 2));
   vec2 wide = vec2(placeNoise(at, bits + 1, 81u).x, placeNoise(at, bits + 1, 82u).x);
   vec2 fine = vec2(placeNoise(at, max(bits - 2, 4), 83u).x, placeNoise(at, max(bits - 2, 4), 84u).x);
-  return shown * (0.9 * wide + 0.35 * fine);
+  return shown * (0.6 * wide + 0.25 * fine);
 }
 
 /// Adds the materials of a place to it. Returns what lies under them.
@@ -98,9 +98,10 @@ GroundSurface surfaceAt(vec3 rel, vec2 rel_cells, vec2 footprint_cells, Relief r
 
 /// What wet ground mirrors of sun and sky.
 vec3 mirroredLight(GroundSurface surface, vec3 normal, vec3 to_eye, float lit) {
-  float fresnel = 0.03 + 0.97 * pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+  float fresnel = 0.03 + 0.45 * pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);  // rough: it never mirrors all
   float shine = pow(max(dot(normal, normalize(to_eye + frame.sun.xyz)), 0.0), 60.0);
-  return surface.wet * (0.5 * fresnel * skyColour(reflect(-to_eye, normal)) * surface.sky + 0.16 * shine * lit * kSunLight);
+  return surface.wet *
+         (0.5 * fresnel * skyColour(reflect(-to_eye, normal)) * surface.sky + 0.16 * shine * lit * kSunLight);
 }
 
 /// Colour that the ground sends to the eye, with fog; kShadeNormals: its normal.

@@ -4,15 +4,16 @@
 struct GroundCover {
   vec3 albedo;
   vec2 slope;
-  float wet;   // 0 .. 1: how much it mirrors
-  float sky;   // shares of the sky and the sun that its own grains let through
+  float wet;  // 0 .. 1: how much it mirrors
+  float sky;  // shares of the sky and the sun that its own grains let through
   float sun;
   float lift;  // how high a place lies among them, 0 .. 1
 };
 
 GroundCover coverOf(vec3 albedo, vec2 slope) { return GroundCover(albedo, slope, 0.0, 1.0, 1.0, 0.0); }
 
-/// Soil in grains and small clods: brightness about 0, and slope. All of it fades out before it gets finer than a pixel.
+/// Soil in grains and small clods: brightness about 0, and slope. All of it fades out before it gets finer than a
+/// pixel.
 vec3 clodsAt(ivec2 at, float footprint_m, uint seed) {
   vec3 sum = vec3(0.0);
   const int bits[5] = int[5](13, 12, 11, 10, 8);
@@ -66,7 +67,8 @@ GroundCover sandAt(vec3 colour, ivec2 at, float footprint_m) {
   float wide = placeNoise(at, 16, 41u).x * shownDetail(footprint_m, bitsSize(16));
   vec3 ripples = turnedNoise(at, ivec2(1, 3), ivec2(14, 11), 42u) * shownDetail(footprint_m, 0.06);
   vec3 dents = placeNoise(at, 9, 43u) * shownDetail(footprint_m, bitsSize(9));
-  float grains = detailValue(at >> 4, 44u) * shownDetail(footprint_m, 0.004) + placeNoise(at, 7, 45u).x * shownDetail(footprint_m, bitsSize(7));
+  float grains = detailValue(at >> 4, 44u) * shownDetail(footprint_m, 0.004) +
+                 placeNoise(at, 7, 45u).x * shownDetail(footprint_m, bitsSize(7));
   vec3 albedo = colour * (1.0 + 0.10 * wide + 0.04 * ripples.x + 0.05 * dents.x + 0.16 * grains);
   return coverOf(albedo, 0.0030 * ripples.yz + 0.0016 * dents.yz);
 }
@@ -106,12 +108,14 @@ GroundCover stonesLook(MaterialLook look, MapPlace place, vec2 footprint_m) {
   int side = look.texture_kind.y;
   float side_m = float(side) / float(kUnitsPerMetre);
   bool broken = look.texture_kind.x == kTextureGravel;
-  float patches = 0.10 * placeNoise(at, 15, 71u).x * shownDetail(footprint_m.y, bitsSize(15)) +
-                  0.10 * placeNoise(at, 13, 73u).x * shownDetail(footprint_m.y, bitsSize(13)) +
-                  0.10 * placeNoise(at, 12, 74u).x * shownDetail(footprint_m.y, bitsSize(12));
-  GroundCover cover = coverOf(look.albedo.rgb * (1.0 + patches), vec2(0.0));
   // Each is round: blurring by the longer side of the footprint would hide them too near.
-  float shown = side == 0 ? 0.0 : shownDetail(sqrt(footprint_m.x * footprint_m.y), 0.6 * side_m);
+  float middle_m = sqrt(footprint_m.x * footprint_m.y);
+  float patches = 0.0;
+  for (int bits = 11; bits <= 15; ++bits)
+    patches +=
+        (bits == 11 ? 0.22 : 0.10) * placeNoise(at, bits, 60u + uint(bits)).x * shownDetail(middle_m, bitsSize(bits));
+  GroundCover cover = coverOf(look.albedo.rgb * (1.0 + patches), vec2(0.0));
+  float shown = side == 0 ? 0.0 : shownDetail(middle_m, 0.6 * side_m);
   // From afar the shadows between them darken what is seen.
   const float kSeenFromAfar = 0.80;
   cover.sun = side == 0 ? 1.0 : kSeenFromAfar;

@@ -52,12 +52,14 @@ void addStones(inout Stones stones, ivec2 at, int side, uint seed, bool broken, 
 
 /// @param side  of a stone, 0.1 mm: those of the large ones; small ones lie between them
 Stones stonesAt(ivec2 at, int side, bool broken) {
-  Stones stones = Stones(0.0, vec2(0.0), 0u);
-  addStones(stones, at, side, 0x51ab3f07u, broken, 1.0);
-  Stones small = Stones(0.0, vec2(0.0), 0u);
-  int half_side = max(side / 2, 1);
-  addStones(small, at + ivec2(side / 5, side / 7), half_side, 0x2f6b8d13u, broken, 0.55);
-  small.slope *= 2.0;
-  if (small.height > stones.height) stones = small;
-  return stones;
+  Stones highest = Stones(0.0, vec2(0.0), 0u);
+  int layers = side > 1 ? 2 : 1;
+  for (int layer = 0; layer < layers; ++layer) {
+    Stones stones = Stones(0.0, vec2(0.0), 0u);
+    ivec2 moved = layer == 0 ? at : at + ivec2(side / 5, side / 7);
+    addStones(stones, moved, side >> layer, 0x51ab3f07u + uint(layer) * 0xdebe4e0cu, broken, layer == 0 ? 1.0 : 0.55);
+    stones.slope *= float(1 + layer);
+    if (stones.height > highest.height) highest = stones;
+  }
+  return highest;
 }
