@@ -12,6 +12,7 @@
 
 #include "client/crater_measure.h"
 #include "client/drift_figures.h"
+#include "client/drift_measure.h"
 #include "client/figure_scene.h"
 #include "client/picture_options.h"
 #include "client/views.h"
@@ -19,6 +20,7 @@
 #include "shaders/host/make_backend.h"
 #include "shared/base/options.h"
 #include "shared/base/statistics.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 
@@ -169,6 +171,8 @@ Status timeFrames(FigureScene& scene, Renderer& renderer, const Camera& camera, 
   for (int frame = 1; frame <= frame_count; ++frame) {
     if (const Status run = scene.runTo(tick + frame); !run) return run;
     renderer.tilesChanged(scene.activeTiles());
+    for (const Tile* tile : tilesInSnow(scene.state(), tick + frame, SnowTiles::asleep))
+      renderer.tilesChanged({&tile->at, 1});
     FrameTimes times;
     renderer.draw(scene.view(), camera, &times);
     heights_ms.push_back(times.heights_ms);
@@ -220,7 +224,8 @@ Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
   const auto context = openHeadlessContext();
   if (!context) return Error{context.error()};
   fmt::print("renderer {} ({})\n", (*context)->renderer(), (*context)->path());
-  if (!arguments.measure.empty()) return measureCraters(settings, arguments.json);
+  if (arguments.measure == "craters") return measureCraters(settings, arguments.json);
+  if (arguments.measure == "drift") return measureDrift(settings, arguments.backend, arguments.json);
   if (!arguments.pack.empty()) return drawPack(arguments, settings);
   if (arguments.only == "craters") return drawCraters(arguments, settings);
   if (arguments.only == "drift")
@@ -254,8 +259,11 @@ int run(int argc, char** argv) {
       "trails, follow, above, overview, columns, or of a crater: crater, crater-ground, crater-inside, crater-above",
       &arguments.look);
   options.add("crater", "ID", "which crater to look at", &arguments.crater, 0, kCratersLimit - 1);
-  options.add("measure", "WHAT", "craters: what a picture takes with and without them, by the cells of their hash",
-              &arguments.measure);
+  options.add(
+      "measure", "WHAT",
+      "craters: what a picture takes with and without them, by the cells of their hash; drift: what a frame takes "
+      "with a sweep of it, by grid and tessellation",
+      &arguments.measure);
   options.add("json", "FILE", "with --measure: where the numbers go", &arguments.json);
   options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
   options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
@@ -280,8 +288,8 @@ int run(int argc, char** argv) {
         fmt::format("--look \"{}\": want trails, follow, above, overview, columns, crater, crater-ground, "
                     "crater-inside or crater-above",
                     arguments.look));
-  if (!arguments.measure.empty() && arguments.measure != "craters")
-    return refuse(fmt::format("--measure \"{}\": want craters", arguments.measure));
+  if (!arguments.measure.empty() && arguments.measure != "craters" && arguments.measure != "drift")
+    return refuse(fmt::format("--measure \"{}\": want craters or drift", arguments.measure));
   if (!arguments.json.empty() && arguments.measure.empty()) return refuse("--json: goes with --measure");
   const auto known = [&](const DisplacementFigure& figure) { return arguments.only == figure.number; };
   const bool other = arguments.only == "craters" || arguments.only == "drift";
