@@ -33,6 +33,7 @@ constexpr int kWarmUpFrames = 1;
 constexpr int kLeastFrames = 3;
 constexpr double kLeastTime_s = 0.7;
 
+/// The pack's session.
 class MeasuredScene {
  public:
   MeasuredScene(std::int32_t side_cells, std::unique_ptr<Backend> backend)
@@ -41,19 +42,17 @@ class MeasuredScene {
         script_(base_),
         simulation_(base_, packId(encodePack(pack_)), std::move(backend)) {}
 
-  Result<TickResult> step() { return simulation_.step(script_.poses(simulation_.state().tick + 1)); }, {});
-} const ScenePack& pack() const {
-  return pack_;
-}
-const WorldState& state() const { return simulation_.state(); }
-TerrainView view() const { return {&base_, &simulation_.state()}; }
-std::string backendName() const { return simulation_.backend().name() + " on " + simulation_.backend().renderer(); }
+  Result<TickResult> step() { return simulation_.step(script_.poses(simulation_.state().tick + 1)); }
+  const ScenePack& pack() const { return pack_; }
+  const WorldState& state() const { return simulation_.state(); }
+  TerrainView view() const { return {&base_, &simulation_.state()}; }
+  std::string backendName() const { return simulation_.backend().name() + " on " + simulation_.backend().renderer(); }
 
-private:
-ScenePack pack_;
-BaseTerrain base_;
-Script script_;
-Simulation simulation_;
+ private:
+  ScenePack pack_;
+  BaseTerrain base_;
+  Script script_;
+  Simulation simulation_;
 };
 
 /// The whole grid, from over its southern edge.
