@@ -8,8 +8,9 @@
 
 namespace spoor {
 
-Console::Console(int input, ChangeQueue& queue, CraterQueue& craters, std::function<void(const std::string&)> say)
-    : input_(input), queue_(queue), craters_(craters), say_(std::move(say)) {
+Console::Console(int input, ChangeQueue& queue, CraterQueue& craters, SnowfallQueue& snowfalls,
+                 std::function<void(const std::string&)> say)
+    : input_(input), queue_(queue), craters_(craters), snowfalls_(snowfalls), say_(std::move(say)) {
   if (::pipe(stop_) != 0) throw std::runtime_error("the console cannot open a pipe");
   thread_ = std::thread([this] { serve(); });
 }
@@ -56,9 +57,10 @@ void Console::serve() {
 void Console::onLine(const std::string& line, bool too_long) {
   if (too_long) return say_("console: a line of more than " + std::to_string(kLineLimit) + " bytes; nothing changes");
   if (line.find_first_not_of(" \t\r") == std::string::npos) return;
-  constexpr std::string_view kCraterWord = "crater ";
+  constexpr std::string_view kCraterWord = "crater ", kSnowWord = "snow ";
   const std::string_view text = std::string_view(line).substr(line.find_first_not_of(" \t\r"));
   if (text.starts_with(kCraterWord)) return onCrater(text.substr(kCraterWord.size()));
+  if (text.starts_with(kSnowWord)) return onSnowfall(text.substr(kSnowWord.size()));
   auto values = parseAssignments(line);
   if (!values) return say_("console: " + values.error() + "; nothing changes");
   if (!queue_.push({0, std::move(*values)}))
@@ -70,6 +72,13 @@ void Console::onCrater(std::string_view text) {
   if (!wish) return say_("console: crater: " + wish.error() + "; there is none");
   if (!craters_.push(*wish))
     say_("console: " + std::to_string(CraterQueue::kLimit) + " craters wait for a tick already; there is none");
+}
+
+void Console::onSnowfall(std::string_view text) {
+  const auto wish = parseSnowfall(text);
+  if (!wish) return say_("console: snow: " + wish.error() + "; there is none");
+  if (!snowfalls_.push(*wish))
+    say_("console: " + std::to_string(SnowfallQueue::kLimit) + " snowfalls wait for a tick already; there is none");
 }
 
 }  // namespace spoor

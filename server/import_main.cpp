@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/scene_source.h"
+#include "server/snowfall_text.h"
 
 namespace {
 
@@ -51,6 +52,12 @@ void report(const LoadedScene& scene, const std::string& out) {
   if (pack.crater_limits.radius_q > 0)
     std::printf("craters %zu timed, the largest allowed has R3 %g m\n", pack.craters.size(),
                 pack.crater_limits.radius_q / 1e4);
+  std::string names;
+  for (const Material& material : pack.materials) names += (names.empty() ? "" : ", ") + material.name;
+  constexpr const char* kMaps[] = {"everywhere", "by an image", "by rules over height and slope"};
+  std::printf("soil   %s, %s\n", names.c_str(),
+              pack.materials.size() > 1 ? kMaps[int(pack.material_map.kind)] : kMaps[0]);
+  for (const Snowfall& snowfall : pack.snowfalls) std::printf("snow   %s\n", describeSnowfall(pack, snowfall).c_str());
   std::printf("pack   %s: %zu bytes, id %s\n", out.c_str(), scene.encoded.size(), toText(scene.id).c_str());
 }
 

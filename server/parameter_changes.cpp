@@ -16,7 +16,8 @@ Result<std::vector<NamedValue>> parseAssignments(std::string_view text) {
       return Error{std::string(parameter.name) +
                    ": cannot change in a session: " + std::string(parameter.fixed_because)};
     for (const NamedValue& other : values)
-      if (other.parameter == &parameter) return Error{std::string(parameter.name) + ": given twice"};
+      if (other.parameter == &parameter && other.material == value->material)
+        return Error{nameOf(*value) + ": given twice"};
     values.push_back(*value);
     if (comma == std::string_view::npos) return values;
     text.remove_prefix(comma + 1);

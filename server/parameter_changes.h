@@ -16,11 +16,11 @@ struct ParameterChange {
   std::vector<NamedValue> values;
 };
 
-/// Reads "NAME=VALUE[,NAME=VALUE...]". Safe on untrusted text. Errors besides parseNamed's: names of what a running
+/// Reads "[MATERIAL.]NAME=VALUE[,...]". Safe on untrusted text. Errors besides parseNamed's: names of what a running
 /// session cannot change.
 Result<std::vector<NamedValue>> parseAssignments(std::string_view text);
 
-/// Reads "TICK:NAME=VALUE[,NAME=VALUE...]". Safe on untrusted text.
+/// Reads "TICK:[MATERIAL.]NAME=VALUE[,...]". Safe on untrusted text.
 Result<ParameterChange> parseChange(std::string_view text);
 
 /// Changes on their way from a thread that makes them to the tick loop.

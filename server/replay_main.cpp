@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "server/named_parameters.h"
+#include "server/snowfall_text.h"
 #include "shaders/host/make_backend.h"
 #include "shared/base/json.h"
 #include "shared/base/options.h"
@@ -34,27 +35,42 @@ void printCraters(std::span<const Crater> craters) {
   if (craters.size() > kCratersListed) std::printf("and %zu craters more\n", craters.size() - kCratersListed);
 }
 
+void printMaterials(const ScenePack& pack) {
+  constexpr const char* kMaps[] = {"the first everywhere", "by an image", "by rules over height and slope"};
+  std::printf("materials %zu, %s\n", pack.materials.size(), kMaps[int(pack.material_map.kind)]);
+  for (const Material& material : pack.materials)
+    std::printf("  %s, colour #%02x%02x%02x\n", material.name.c_str(), material.colour[0], material.colour[1],
+                material.colour[2]);
+}
+
 int info(SessionReader& reader) {
   printInfo(reader);
-  const std::int32_t cell_q = reader.pack().cell_q;
+  printMaterials(reader.pack());
   Parameters parameters = reader.pack().parameters;
   std::printf("parameters at the start\n");
-  for (const std::string& line : describeParameters(parameters, cell_q)) std::printf("  %s\n", line.c_str());
+  for (const std::string& line : describeParameters(reader.pack(), parameters)) std::printf("  %s\n", line.c_str());
+  for (const Snowfall& snowfall : reader.pack().snowfalls)
+    std::printf("snowfall on %s\n", describeSnowfall(reader.pack(), snowfall).c_str());
   TickRecord last;
   std::vector<Crater> craters;
+  std::size_t snowfall_count = reader.pack().snowfalls.size();
   for (;;) {
     auto record = reader.next();
     if (!record) return fail(record.error());
     if (!*record) break;
     last = std::move(**record);
     craters.insert(craters.end(), last.craters.begin(), last.craters.end());
+    for (const Snowfall& snowfall : last.snowfalls)
+      std::printf("tick %d: snowfall on %s\n", last.tick, describeSnowfall(reader.pack(), snowfall).c_str());
+    snowfall_count += last.snowfalls.size();
     if (!last.parameters) continue;
-    std::printf("tick %d: %s\n", last.tick, describeChange(parameters, *last.parameters, cell_q).c_str());
+    std::printf("tick %d: %s\n", last.tick, describeChange(reader.pack(), parameters, *last.parameters).c_str());
     parameters = *last.parameters;
   }
   printCraters(craters);
   std::printf("craters %zu, ledger's crater budget %lld\n", craters.size(),
               static_cast<long long>(last.ledger.craters));
+  std::printf("snowfalls %zu, ledger's events %lld\n", snowfall_count, static_cast<long long>(last.ledger.events));
   std::printf("ticks %d%s\nlast hash %s, ledger error %lld\n", last.tick,
               reader.truncated() ? " (the file ends within the next)" : "", hexText(last.state_hash).c_str(),
               static_cast<long long>(last.ledger.error()));
@@ -63,16 +79,16 @@ int info(SessionReader& reader) {
 
 /// One line for each tick, as comma-separated values.
 int exportTicks(SessionReader& reader) {
-  std::printf("tick,state_hash,initial,ground,compacted,craters,events,new_craters\n");
+  std::printf("tick,state_hash,initial,ground,compacted,craters,events,new_craters,new_snowfalls\n");
   for (;;) {
     auto record = reader.next();
     if (!record) return fail(record.error());
     if (!*record) return 0;
     const TickRecord& tick = **record;
-    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld,%zu\n", tick.tick, hexText(tick.state_hash).c_str(),
+    std::printf("%d,%s,%lld,%lld,%lld,%lld,%lld,%zu,%zu\n", tick.tick, hexText(tick.state_hash).c_str(),
                 static_cast<long long>(tick.ledger.initial), static_cast<long long>(tick.ledger.ground),
                 static_cast<long long>(tick.ledger.compacted), static_cast<long long>(tick.ledger.craters),
-                static_cast<long long>(tick.ledger.events), tick.craters.size());
+                static_cast<long long>(tick.ledger.events), tick.craters.size(), tick.snowfalls.size());
   }
 }
 
@@ -89,7 +105,9 @@ int verify(SessionReader& reader, std::unique_ptr<Backend> backend) {
       if (!record) return fail(record.error());
       ended = !*record;
       if (ended) break;
-      if (Status status = simulation.begin((*record)->poses, (*record)->parameters, (*record)->craters); !status)
+      if (Status status =
+              simulation.begin((*record)->poses, (*record)->parameters, (*record)->craters, (*record)->snowfalls);
+          !status)
         return fail("tick " + std::to_string((*record)->tick) + ": " + status.error());
       begun.push_back(std::move(**record));
     }

@@ -83,6 +83,8 @@ std::string tableOf(const SessionReport& report) {
   if (figures.craters > 0 || figures.craters_refused > 0 || asked > 0)
     row("craters", fmt::format("{}; {} left out; clients asked for {}, {} refused", figures.craters,
                                figures.craters_refused, asked, refused));
+  if (figures.snowfalls > 0 || figures.snowfalls_refused > 0)
+    row("snowfalls", fmt::format("{} besides the scene's; {} left out", figures.snowfalls, figures.snowfalls_refused));
   if (figures.waiting_ticks > 0)
     row("too much", fmt::format("in {} ticks more than {} tiles were awake, and some waited", figures.waiting_ticks,
                                 kTickTilesLimit));
@@ -134,6 +136,8 @@ JsonWriter jsonOf(const SessionReport& report) {
   json.value("kept_back", report.figures.kept_back);
   json.value("crater_count", report.figures.craters);
   json.value("craters_left_out", report.figures.craters_refused);
+  json.value("snowfall_count", report.figures.snowfalls);
+  json.value("snowfalls_left_out", report.figures.snowfalls_refused);
   json.hash("server_hash", report.server_hash);
   json.beginArray("client_hashes");
   for (const ClientReport& client : report.clients) {

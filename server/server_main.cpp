@@ -27,9 +27,26 @@ struct Settings {
   std::vector<ParameterChange> changes;  // of `set`
   std::vector<std::string> crater;
   std::vector<TimedCrater> craters;  // of `crater`
+  std::vector<std::string> snowfall;
+  std::vector<TimedSnowfall> snowfalls;  // of `snowfall`
   std::int64_t port = 47474, ticks = 0, seed = -1, threads = 0, wait_clients = 0;
   double rate_hz = -1, wait_s = 60;
 };
+
+/// Parses each text of an option; a bad one ends the program.
+template <typename Parse>
+auto parseAllOrExit(const char* option, const std::vector<std::string>& texts, Parse parse) {
+  std::vector<std::remove_cvref_t<decltype(*parse(""))>> values;
+  for (const std::string& text : texts) {
+    auto value = parse(text);
+    if (!value) {
+      std::fprintf(stderr, "spoor-server: --%s '%s': %s (see --help)\n", option, text.c_str(), value.error().c_str());
+      std::exit(2);
+    }
+    values.push_back(std::move(*value));
+  }
+  return values;
+}
 
 void parse(int argc, char** argv, Settings& settings) {
   Options options("spoor-server", "hosts a session of a scene");
@@ -48,28 +65,18 @@ void parse(int argc, char** argv, Settings& settings) {
   options.add("wait-clients", "N", "begin when so many clients are in sync", &settings.wait_clients, 0, 1000);
   options.add("wait", "S", "how long to wait for them", &settings.wait_s, 0.0, 86400.0);
   options.add("json", "FILE", "also write the table's figures there", &settings.json);
-  options.add("set", "T:NAME=VALUE,...", "from tick T on; names as in a scene's [thesis]", &settings.set);
+  options.add("set", "T:NAME=VALUE,...", "from tick T on; names as in a scene's [thesis], or MATERIAL.NAME",
+              &settings.set);
   options.add("crater", "T:X,Y,R1,R2,D5,...", "at tick T, metres; then H4 or balanced, then noise, 0 .. 1",
               &settings.crater);
-  options.addFlag("console", "read lines NAME=VALUE,... or crater X,Y,R1,R2,D5,... for the next tick",
+  options.add("snowfall", "T:X0,Y0,X1,Y1,MM_PER_HOUR,SECONDS[,SEED]", "from tick T on, metres", &settings.snowfall);
+  options.addFlag("console",
+                  "read lines NAME=VALUE,..., crater X,Y,R1,R2,D5,... or snow X0,Y0,X1,Y1,... for the next tick",
                   &settings.console);
   options.parseOrExit(argc, argv);
-  for (const std::string& text : settings.set) {
-    auto change = parseChange(text);
-    if (!change) {
-      std::fprintf(stderr, "spoor-server: --set '%s': %s (see --help)\n", text.c_str(), change.error().c_str());
-      std::exit(2);
-    }
-    settings.changes.push_back(std::move(*change));
-  }
-  for (const std::string& text : settings.crater) {
-    const auto crater = parseTimedCrater(text);
-    if (!crater) {
-      std::fprintf(stderr, "spoor-server: --crater '%s': %s (see --help)\n", text.c_str(), crater.error().c_str());
-      std::exit(2);
-    }
-    settings.craters.push_back(*crater);
-  }
+  settings.changes = parseAllOrExit("set", settings.set, parseChange);
+  settings.craters = parseAllOrExit("crater", settings.crater, parseTimedCrater);
+  settings.snowfalls = parseAllOrExit("snowfall", settings.snowfall, parseTimedSnowfall);
 }
 
 /// Logging on a thread of its own that drops its oldest lines rather than hold a tick up.
@@ -116,6 +123,22 @@ void checkCraters(const ScenePack& pack, const std::vector<TimedCrater>& craters
       throw std::runtime_error(fmt::format("--crater, tick {}: {}", crater.tick, resolved.error()));
 }
 
+void checkSnowfalls(const ScenePack& pack, const std::vector<TimedSnowfall>& snowfalls) {
+  if (pack.snowfalls.size() + snowfalls.size() > kSnowfallsLimit)
+    throw std::runtime_error(fmt::format("--snowfall: {} with the scene's, the limit is {}",
+                                         pack.snowfalls.size() + snowfalls.size(), kSnowfallsLimit));
+  for (const TimedSnowfall& snowfall : snowfalls)
+    if (const auto resolved = resolveSnowfall(pack, snowfall.wish, snowfall.tick); !resolved)
+      throw std::runtime_error(fmt::format("--snowfall, tick {}: {}", snowfall.tick, resolved.error()));
+}
+
+/// Inputs of the command line for ticks that will not come.
+template <typename Input>
+void warnLate(const char* option, const std::vector<Input>& inputs, std::int32_t ticks) {
+  for (const Input& input : inputs)
+    if (input.tick > ticks) spdlog::warn("--{}, tick {}: the session ends with tick {}", option, input.tick, ticks);
+}
+
 void awaitClients(const SessionHost& host, const Settings& settings) {
   if (settings.wait_clients == 0) return;
   spdlog::info("waiting for {} clients", settings.wait_clients);
@@ -140,6 +163,7 @@ int run(int argc, char** argv) {
   for (const std::string& text : scene.notes) spdlog::info("import: {}", text);
   checkChanges(scene.pack, settings.changes);
   checkCraters(scene.pack, settings.craters);
+  checkSnowfalls(scene.pack, settings.snowfalls);
   const BaseTerrain base(scene.pack);
   const auto say = [](const std::string& line) { spdlog::info(line); };
   Simulation simulation(base, scene.id,
@@ -160,20 +184,20 @@ int run(int argc, char** argv) {
   loop.ticks = settings.ticks > 0 ? std::int32_t(settings.ticks) : scene.pack.default_ticks;
   loop.rate_hz = settings.rate_hz < 0 ? scene.pack.ticks_per_second : settings.rate_hz;
   loop.changes = settings.changes;
-  for (const ParameterChange& change : loop.changes)
-    if (change.tick > loop.ticks)
-      spdlog::warn("--set, tick {}: the session ends with tick {}", change.tick, loop.ticks);
   loop.craters = settings.craters;
-  for (const TimedCrater& crater : loop.craters)
-    if (crater.tick > loop.ticks)
-      spdlog::warn("--crater, tick {}: the session ends with tick {}", crater.tick, loop.ticks);
+  loop.snowfalls = settings.snowfalls;
+  warnLate("set", loop.changes, loop.ticks);
+  warnLate("crater", loop.craters, loop.ticks);
+  warnLate("snowfall", loop.snowfalls, loop.ticks);
   ChangeQueue typed;
   CraterQueue typed_craters;
+  SnowfallQueue typed_snowfalls;
   std::optional<Console> console;
   if (settings.console) {
     loop.console = &typed;
     loop.console_craters = &typed_craters;
-    console.emplace(STDIN_FILENO, typed, typed_craters, say);
+    loop.console_snowfalls = &typed_snowfalls;
+    console.emplace(STDIN_FILENO, typed, typed_craters, typed_snowfalls, say);
   }
   SessionReport report;
   report.figures = runTicks(simulation, base, loop, host.get(), writer.get(), say);

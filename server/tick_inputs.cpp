@@ -21,6 +21,7 @@ TickInputs::TickInputs(const ScenePack& pack, const Script& script, const Parame
       parameters_(start),
       console_(options.console),
       craters_(pack, script, options.craters, options.console_craters, host, say),
+      snowfalls_(pack, options.snowfalls, options.console_snowfalls, say),
       say_(say) {
   for (const ParameterChange& change : options.changes) changes_[change.tick].push_back(change);
 }
@@ -32,6 +33,7 @@ Status TickInputs::begin(Simulation& simulation, std::int32_t tick, const std::v
   if (console_ != nullptr)
     for (const ParameterChange& change : console_->tryTake()) apply(change, tick);
   const CraterBatch batch = craters_.take(tick);
+  const std::vector<Snowfall> snowfalls = snowfalls_.take(tick, simulation.state().snowfalls.size());
   const int absent = (batch.askedCount() == 0 ? kAsked : 0) | (batch.scene.empty() ? kScene : 0) |
                      (parameters_ == before ? kChange : 0);
   std::array<bool, 8> tried = {};
@@ -43,13 +45,14 @@ Status TickInputs::begin(Simulation& simulation, std::int32_t tick, const std::v
     const bool with_scene = (parts & kScene) != 0, with_asked = (parts & kAsked) != 0;
     const bool with_change = (parts & kChange) != 0 && parameters_ != before;
     const std::vector<Crater> craters = batch.all(with_scene, with_asked);
-    status = simulation.begin(poses, with_change ? std::optional(parameters_) : std::nullopt, craters);
+    status = simulation.begin(poses, with_change ? std::optional(parameters_) : std::nullopt, craters, snowfalls);
     if (!status && why_not.empty()) why_not = status.error();
     if (!status) continue;
-    if (with_change) say_(fmt::format("tick {}: {}", tick, describeChange(before, parameters_, pack_.cell_q)));
+    if (with_change) say_(fmt::format("tick {}: {}", tick, describeChange(pack_, before, parameters_)));
     if ((parts & kChange) == 0) say_(fmt::format("tick {}: the parameters stay as they were: {}", tick, why_not));
     if (!with_change) parameters_ = before;
     const auto first_id = std::uint32_t(simulation.state().craters.size() - craters.size());
+    snowfalls_.note(tick, snowfalls);
     craters_.note(tick, batch, with_scene, with_asked, first_id, why_not);
     return status;
   }

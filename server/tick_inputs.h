@@ -3,11 +3,12 @@
 #include <map>
 
 #include "server/crater_feed.h"
+#include "server/snowfall_feed.h"
 #include "server/tick_loop.h"
 
 namespace spoor {
 
-/// What goes into a session's ticks besides poses: parameters where they change, and craters.
+/// What goes into a session's ticks besides poses: parameters where they change, craters and snowfalls.
 class TickInputs {
  public:
   using Say = CraterFeed::Say;
@@ -22,6 +23,7 @@ class TickInputs {
   [[nodiscard]] Status begin(Simulation& simulation, std::int32_t tick, const std::vector<Pose>& poses);
 
   const CraterFeed& craters() const { return craters_; }
+  const SnowfallFeed& snowfalls() const { return snowfalls_; }
   /// A tick has been published.
   void published(std::int32_t tick) { craters_.published(tick); }
 
@@ -33,6 +35,7 @@ class TickInputs {
   ChangeQueue* console_;
   std::map<std::int32_t, std::vector<ParameterChange>> changes_;
   CraterFeed craters_;
+  SnowfallFeed snowfalls_;
   const Say& say_;
 };
 

@@ -115,8 +115,8 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     const std::uint64_t hash = result->update.state_hash;
     const auto publish_start = Clock::now();
     if (writer != nullptr)
-      writer->append(
-          {tick, result->update.poses, hash, result->ledger, result->update.parameters, result->update.craters});
+      writer->append({tick, result->update.poses, hash, result->ledger, result->update.parameters,
+                      result->update.craters, result->update.snowfalls});
     if (host != nullptr) host->publish(std::move(result->update));
     inputs.published(tick);
     result->effect.stage_ms[int(Stage::publish)] = millisecondsSince(publish_start);
@@ -131,6 +131,8 @@ LoopFigures runTicks(Simulation& simulation, const BaseTerrain& base, const Loop
     }
   }
   if (!failure.empty()) say(failure);
+  figures.snowfalls = inputs.snowfalls().count();
+  figures.snowfalls_refused = inputs.snowfalls().refusedCount();
   figures.craters = inputs.craters().count();
   figures.craters_refused = inputs.craters().refusedCount();
   figures.wall_s = millisecondsSince(start) / 1e3;

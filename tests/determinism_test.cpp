@@ -211,6 +211,37 @@ TEST_P(DeterminismOfBackends, BodiesThatShareATileButNoDomainDoNotRace) {
     }
 }
 
+TEST(DeterminismOfMaterials, ThreadsKernelsAndSkippingDoNotShowWhereBodiesPushAndSnowFalls) {
+  for (const SlopeRule rule : {SlopeRule::drift, SlopeRule::exchange})
+    for (const Displacement displacement : {Displacement::direct, Displacement::none}) {
+      RandomWorld made = meeting();
+      made.craters.resize(made.ticks.size());
+      made.snowfalls.resize(made.ticks.size());
+      ScenePack& pack = made.pack;
+      addMaterials(pack, 3, 2);
+      pack.parameters.materials.resize(3, pack.parameters.materials[0]);
+      pack.parameters.slopes = rule;
+      pack.parameters.displacement = displacement;
+      for (int i = 0; i < 3; ++i) {
+        MaterialRules& own = pack.parameters.materials[std::size_t(i)];
+        own.slope_threshold_q = 100 + 300 * i;
+        own.diagonal_threshold_q = 140 + 420 * i;
+        own.compression_q16 = i * kOneQ16 / 5;
+        own.friction_inverse_q32 = 1 << (20 + 2 * i);
+      }
+      for (Body& body : pack.bodies) body.force_n = 30000;
+      for (auto& poses : made.ticks)
+        for (Pose& pose : poses) pose.scale_q16 = kFullScale - 700 * int(&poses - made.ticks.data());
+      pack.snowfalls = {{{0, 0, 250, 170}, std::int64_t(40) << 32, 1, 100, 3}};
+      const World world(made.pack);
+      const Hashes expected = hashesOf(world, made.ticks, {.thread_count = 1}, &made);
+      for (const Kernels* set : availableKernels())
+        EXPECT_EQ(hashesOf(world, made.ticks, {.thread_count = 2, .kernels = set}, &made), expected) << set->name;
+      EXPECT_EQ(hashesOf(world, made.ticks, {.thread_count = 7}, &made), expected);
+      EXPECT_EQ(hashesOf(world, made.ticks, {.thread_count = 3, .skip_settled = false}, &made), expected);
+    }
+}
+
 TEST(DeterminismOfRandomWorlds, ThreadsKernelsAndSkippingDoNotShow) {
   for (std::uint32_t seed = 1000; seed < 1030; ++seed) {
     RandomWorld random = randomWorld(seed, 12);

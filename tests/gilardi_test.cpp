@@ -1,5 +1,5 @@
 // The published scheme in real numbers, and the drift rule beside the same equations.
-#include "tests/gilardi.h"
+#include "tests/bench/gilardi.h"
 
 #include <gtest/gtest.h>
 

@@ -21,38 +21,50 @@ namespace {
 using Ticks = std::vector<std::vector<Pose>>;
 using Changes = std::map<std::size_t, Parameters>;  // by index of the tick from which on they hold
 
-std::optional<Parameters> changeAt(const Changes& changes, std::size_t tick) {
-  const auto found = changes.find(tick);
-  return found == changes.end() ? std::nullopt : std::optional(found->second);
+/// What ticks are given besides poses.
+struct Events {
+  Changes changes;
+  std::vector<std::vector<Crater>> craters;      // of every tick; empty: none in any
+  std::vector<std::vector<Snowfall>> snowfalls;  // the same
+};
+
+Events eventsOf(const RandomWorld& random) {
+  return {random.change == SIZE_MAX ? Changes{} : Changes{{random.change, random.changed}}, random.craters,
+          random.snowfalls};
 }
 
-Changes changesOf(const RandomWorld& random) {
-  return random.change == SIZE_MAX ? Changes{} : Changes{{random.change, random.changed}};
+/// Calls step or begin of a simulation.
+template <typename Call>
+auto callAt(Call call, const std::vector<Pose>& poses, const Events& events, std::size_t tick) {
+  const auto change = events.changes.find(tick);
+  return call(poses, change == events.changes.end() ? std::nullopt : std::optional(change->second),
+              events.craters.empty() ? std::vector<Crater>() : events.craters[tick],
+              events.snowfalls.empty() ? std::vector<Snowfall>() : events.snowfalls[tick]);
 }
 
-using Craters = std::vector<std::vector<Crater>>;  // of every tick; empty: none in any
+Result<TickResult> stepAt(Simulation& simulation, const Ticks& ticks, const Events& events, std::size_t tick) {
+  return callAt([&](auto&&... inputs) { return simulation.step(inputs...); }, ticks[tick], events, tick);
+}
 
-std::vector<Crater> cratersAt(const Craters& craters, std::size_t tick) {
-  return craters.empty() ? std::vector<Crater>() : craters[tick];
+Status beginAt(Simulation& simulation, const Ticks& ticks, const Events& events, std::size_t tick) {
+  return callAt([&](auto&&... inputs) { return simulation.begin(inputs...); }, ticks[tick], events, tick);
 }
 
 class GlBackends : public OnEveryBackend {};
 
 /// Runs ticks on both and compares all that they tell.
-void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {},
-                  const Craters& craters = {}) {
+void compareTicks(Simulation& simulation, Simulation& native, const Ticks& ticks, const Events& events = {}) {
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    const auto expected = native.step(ticks[i], changeAt(changes, i), cratersAt(craters, i));
-    ASSERT_NO_FATAL_FAILURE(
-        compareResults(simulation.step(ticks[i], changeAt(changes, i), cratersAt(craters, i)), expected));
+    const auto expected = stepAt(native, ticks, events, i);
+    ASSERT_NO_FATAL_FAILURE(compareResults(stepAt(simulation, ticks, events, i), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
 }
 
 void compareWithNative(const BackendCase& backend_case, const World& world, const Ticks& ticks,
-                       const Changes& changes = {}, const Craters& craters = {}) {
+                       const Events& events = {}) {
   Simulation simulation = world.simulateOn(backend_case), native = world.simulate();
-  compareTicks(simulation, native, ticks, changes, craters);
+  compareTicks(simulation, native, ticks, events);
 }
 
 std::vector<Pose> initialPoses(const World& world) { return initialState(world.id, world.base).poses; }
@@ -72,7 +84,7 @@ TEST_P(GlBackends, RandomWorldsHaveNativesHashesChangesAndCounts) {
     RandomWorld random = randomWorld(seed, 10);
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
-    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks, changesOf(random), random.craters));
+    ASSERT_NO_FATAL_FAILURE(compareWithNative(GetParam(), world, random.ticks, eventsOf(random)));
   }
 }
 
@@ -213,7 +225,7 @@ TEST_P(GlBackends, RowsOfAFewGroupsDispatchTheSame) {
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
     Simulation simulation(world.base, world.id, makeOwnBackend(options)), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, random.ticks, {}, random.craters));
+    ASSERT_NO_FATAL_FAILURE(compareTicks(simulation, native, random.ticks, eventsOf(random)));
   }
 }
 
@@ -291,15 +303,14 @@ TEST_P(GlBackends, APoolThatHoldsAllSaysNothing) {
 }
 
 /// Begins every tick before the one before it is finished.
-void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks, const Changes& changes = {},
-                       const Craters& craters = {}) {
-  ASSERT_TRUE(simulation.begin(ticks[0], changeAt(changes, 0), cratersAt(craters, 0)));
+void compareOverlapped(Simulation& simulation, Simulation& native, const Ticks& ticks, const Events& events = {}) {
+  ASSERT_TRUE(beginAt(simulation, ticks, events, 0));
   for (std::size_t i = 1; i <= ticks.size(); ++i) {
     if (i < ticks.size()) {
-      const Status begun = simulation.begin(ticks[i], changeAt(changes, i), cratersAt(craters, i));
+      const Status begun = beginAt(simulation, ticks, events, i);
       ASSERT_TRUE(begun) << begun.error();
     }
-    const auto expected = native.step(ticks[i - 1], changeAt(changes, i - 1), cratersAt(craters, i - 1));
+    const auto expected = stepAt(native, ticks, events, i - 1);
     ASSERT_NO_FATAL_FAILURE(compareResults(simulation.finish(), expected));
   }
   ASSERT_TRUE(recount(simulation.state()));
@@ -314,7 +325,7 @@ TEST_P(OverlappedTicks, EqualTicksOneByOne) {
     SCOPED_TRACE(random.description);
     const World world(std::move(random.pack));
     Simulation simulation = world.simulateOn(GetParam()), native = world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks, changesOf(random), random.craters));
+    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, random.ticks, eventsOf(random)));
   }
 }
 
@@ -343,13 +354,13 @@ TEST_P(GlBackends, CompactionThatBeginsAndEndsInOverlappedTicksInASmallPool) {
   Parameters compacting = trip.world.pack.parameters, not_compacting = compacting;
   compacting.materials[0].compression_q16 = kOneQ16 / 3;
   compacting.materials[0].compaction_limit_q16 = kOneQ16 / 4;
-  const Changes changes = {{1, compacting}, {3, not_compacting}, {4, compacting}};
+  const Events events = {{{1, compacting}, {3, not_compacting}, {4, compacting}}, {}, {}};
   for (const int pool_tiles : {2, 1 << 16}) {
     SCOPED_TRACE(std::to_string(pool_tiles) + " tiles");
     GlOptions options = glOptionsOf(GetParam());
     options.pool_tiles = pool_tiles;
     Simulation simulation(trip.world.base, trip.world.id, makeOwnBackend(options)), native = trip.world.simulate();
-    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, trip.ticks, changes));
+    ASSERT_NO_FATAL_FAILURE(compareOverlapped(simulation, native, trip.ticks, events));
     EXPECT_GT(simulation.state().ledger.compacted, 0);
   }
 }

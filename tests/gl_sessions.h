@@ -20,6 +20,7 @@ inline void compareResults(const Result<TickResult>& result, const Result<TickRe
   ASSERT_EQ(result->update.poses, expected->update.poses) << tick;
   ASSERT_EQ(result->update.tiles, expected->update.tiles) << tick;
   ASSERT_EQ(result->update.craters, expected->update.craters) << tick;
+  ASSERT_EQ(result->update.snowfalls, expected->update.snowfalls) << tick;
   ASSERT_EQ(result->ledger, expected->ledger) << tick;
   ASSERT_EQ(result->ledger.error(), 0) << tick;
   ASSERT_EQ(result->too_fast, expected->too_fast) << tick;

@@ -82,7 +82,7 @@ TEST(Hostile, AConfirmationOfThePast) {
 }
 
 TEST(Hostile, AnotherProtocolVersion) {
-  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}); }, "server speaks protocol 3, this client 1");
+  expectLetGo([](Player& p, Rig&) { p.say(Hello{1, "x"}); }, "server speaks protocol 4, this client 1");
 }
 
 TEST(Hostile, RandomMessagesNeverStopASession) {

@@ -15,7 +15,7 @@
 namespace spoor {
 namespace {
 
-const char* const kScenes[] = {"convoy", "walker", "dozer", "box", "wide", "wide_small", "craters"};
+const char* const kScenes[] = {"convoy", "walker", "dozer", "box", "wide", "wide_small", "craters", "materials"};
 
 std::string scenePath(const std::string& name) { return std::string(SPOOR_SCENES_DIR) + "/" + name + ".toml"; }
 

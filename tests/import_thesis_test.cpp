@@ -38,6 +38,7 @@ Parameters defaults() {
   parameters.obstacle_threshold_q = 10;
   parameters.materials[0].slope_threshold_q = 350;  // tan 35 * 500
   parameters.materials[0].diagonal_threshold_q = 495;
+  parameters.materials[0].repose_q16 = 25486;  // 35 / 90
   return parameters;
 }
 
@@ -76,6 +77,13 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
        [](ScenePack& p) {
          p.parameters.materials[0].slope_threshold_q = 952;      // 10^4 tan(1.9 * 0.05) = 952.87
          p.parameters.materials[0].diagonal_threshold_q = 1346;  // 952 sqrt 2 = 1346.3
+         p.parameters.materials[0].repose_q16 = 45359;           // atan(952 / 500) * 2 / pi = 0.69208
+       }},
+      {"angleOfRepose = 45",
+       [](ScenePack& p) {
+         p.parameters.materials[0].slope_threshold_q = 500;
+         p.parameters.materials[0].diagonal_threshold_q = 707;
+         p.parameters.materials[0].repose_q16 = 32768;
        }},
       {"numIterationsDisplaceMaterialToContour = 7", [](ScenePack& p) { p.parameters.displace_iterations = 7; }},
       {"numIterationsEvenOutSlopes = 1000", [](ScenePack& p) { p.parameters.sweeps_per_tick = 1000; }},
@@ -102,6 +110,15 @@ TEST_F(Thesis, EveryKeyHasItsInteger) {
       {"slopes = \"flux\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::flux; }},
       {"slopes = \"interleaved\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::interleaved; }},
       {"slopes = \"scatter\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::scatter; }},
+      {"slopes = \"drift\"", [](ScenePack& p) { p.parameters.slopes = SlopeRule::drift; }},
+      {"displacement = \"none\"", [](ScenePack& p) { p.parameters.displacement = Displacement::none; }},
+      {"driftWeights = \"none\"", [](ScenePack& p) { p.parameters.drift_weights = DriftWeights::none; }},
+      {"driftWeights = \"displacement\"",
+       [](ScenePack& p) { p.parameters.drift_weights = DriftWeights::displacement; }},
+      {"driftStep = 0.3", [](ScenePack& p) { p.parameters.drift_step_q16 = 19661; }},              // 19660.8
+      {"diffusion = 0.9", [](ScenePack& p) { p.parameters.materials[0].diffusion_q16 = 58982; }},  // 58982.4
+      {"frictionInverse = 6e-4",
+       [](ScenePack& p) { p.parameters.materials[0].friction_inverse_q32 = 2576980; }},  // 2576980.4
       {"compactionLimit = 0.25", [](ScenePack& p) { p.parameters.materials[0].compaction_limit_q16 = 16384; }},
       {"spreadCells = 64", [](ScenePack& p) { p.parameters.spread_cells = 64; }},
       {"capacityRounds = 1", [](ScenePack& p) { p.parameters.capacity_rounds = 1; }},
@@ -142,8 +159,8 @@ TEST_F(Thesis, APackWithParametersOutOfRangeIsRefused) {
     wrong[std::size_t(at) + i] = 0xff;
     const auto refused = decodePack(wrong);
     ASSERT_FALSE(refused) << i;
-    EXPECT_TRUE(contains(refused.error(), "pack: parameters: " + std::string(i < 6 ? names[i] : "")))
-        << refused.error();
+    const std::string part = i == count_at ? "pack: truncated" : "pack: parameters: ";
+    EXPECT_TRUE(contains(refused.error(), part + std::string(i < 6 ? names[i] : ""))) << refused.error();
   }
 }
 
@@ -221,12 +238,12 @@ TEST_F(Thesis, WrongKeysNameLineKeyAndReason) {
       {thesisScene("frustumHeight = 53001"), {"thesis.frustumHeight", "0 .. 53000 m"}},
       {thesisScene("activeAreaMargin = 204.81"), {"thesis.activeAreaMargin", "4097 cells, the limit is 4096"}},
       {thesisScene("activeAreas = 1"), {"thesis.activeAreas", "true or false"}},
-      {thesisScene("displacement = \"up\""), {"thesis.displacement", "none of: direct, iterative, spread"}},
+      {thesisScene("displacement = \"up\""), {"thesis.displacement", "none of: direct, iterative, spread, none"}},
       {thesisScene("nearest = \"far\""), {"thesis.nearest", "exact, jump_flooding"}},
       {thesisScene("jumpFloodingVariant = \"JFA\""), {"thesis.jumpFloodingVariant", "nearest is exact"}},
       {thesisScene("nearest = \"jump_flooding\"\njumpFloodingVariant = \"JFA+3\""), {":10: ", "JFA, JFA+1, JFA+2"}},
       {thesisScene("metric = 2"), {"thesis.metric", "text"}},
-      {thesisScene("slopes = \"steep\""), {"thesis.slopes", "exchange, flux, interleaved, scatter"}},
+      {thesisScene("slopes = \"steep\""), {"thesis.slopes", "exchange, flux, interleaved, scatter, drift"}},
       {thesisScene("compactionLimit = 2"), {"thesis.compactionLimit", "0 .. 1"}},
       {thesisScene("spreadCells = 65"), {"thesis.spreadCells", "1 .. 64 cells"}},
       {thesisScene("capacityRounds = 0"), {"thesis.capacityRounds", "1 .. 16"}},
@@ -248,6 +265,15 @@ TEST_F(Thesis, WrongKeysNameLineKeyAndReason) {
        {"thesis.obstacleThreshold", "soil.obstacle_threshold_m"}},
       {thesisScene("numIterationsEvenOutSlopes = 3", "[soil]\nsweeps_per_tick = 3\n"),
        {"thesis.numIterationsEvenOutSlopes", "soil.sweeps_per_tick"}},
+      {thesisScene("angleOfRepose = 3", "[soil]\nrepose_deg = 35\n"), {"thesis.angleOfRepose", "soil.repose_deg"}},
+      {thesisScene("angleOfRepose = 3\nslopeThreshold = 1"), {":9: ", "thesis.angleOfRepose", "says the same"}},
+      {thesisScene("angleOfRepose = 89.5"), {"thesis.angleOfRepose", "0 .. 89 degrees"}},
+      {thesisScene("driftWeights = \"force\""), {"thesis.driftWeights", "none of: none, displacement, slope"}},
+      {thesisScene("driftStep = 0"), {"thesis.driftStep", "0.0001 .. 16 units of time"}},
+      {thesisScene("diffusion = 4.1"), {"thesis.diffusion", "0 .. 4 cells^2 per unit of time"}},
+      {thesisScene("frictionInverse = 0.5"), {"thesis.frictionInverse", "0 .. 0.4999 cells"}},
+      {thesisScene("slopes = \"drift\"\ndriftStep = 16\ndiffusion = 4"),
+       {":10: ", "thesis.driftStep", "10 sweeps a tick of 512 steps each", "are 5120; the limit is 1000"}},
       {thesisScene("", "[soil]\nsweeps_per_tick = 1001\n"), {"soil.sweeps_per_tick", "0 .. 1000"}},
   };
   for (const auto& wrong : cases) {
@@ -361,7 +387,7 @@ TEST_F(Thesis, ARunningSessionKeepsItsWorld) {
     for (const char* text : assignments) values.push_back(*parseNamed(text));
     std::vector<std::string> notes;
     const auto changed = changeParameters(pack, defaults(), values, notes);
-    return changed ? describeChange(defaults(), *changed, pack.cell_q) : changed.error();
+    return changed ? describeChange(pack, defaults(), *changed) : changed.error();
   };
   for (const char* text : {"terrainSize=5", "heightmapSize=64", "numVerticesPerRow=3", "numIterationsBlurNormals=1"}) {
     const std::string name(text, std::string(text).find('='));
@@ -369,7 +395,7 @@ TEST_F(Thesis, ARunningSessionKeepsItsWorld) {
   }
   EXPECT_EQ(change({"roughness=0.25", "compression=0.9"}), "compression 0 -> 0.9, roughness 1 -> 0.25");
   EXPECT_EQ(change({"slopeThreshold=1.9"}),
-            "slopeThreshold 0.7 (0.035 m rest, diagonally 0.0495 m) -> 1.9 (0.0952 m rest)");
+            "slopeThreshold 0.7 (0.035 m rest, 35 degrees, diagonally 0.0495 m) -> 1.9 (0.0952 m rest, 62.3 degrees)");
   EXPECT_EQ(change({"obstacleThreshold=10"}), "");
   EXPECT_EQ(change({"roughness=0.25", "roughness=0.25"}), "roughness: given twice");
   EXPECT_TRUE(contains(change({"activeAreas=false"}), "active_areas is 0 in a world of 20000 x 20000 cells"));
@@ -391,11 +417,15 @@ TEST_F(Thesis, DescriptionsGiveTheSameParametersAgain) {
   std::mt19937 random(9);
   for (int i = 0; i < 300; ++i) {
     const auto cell_q = std::int32_t(1 + random() % 20000);
+    ScenePack pack;
+    pack.cell_q = cell_q;
     Parameters parameters;
-    parameters.displacement = Displacement(random() % 3);
+    parameters.displacement = Displacement(random() % 4);
     parameters.nearest = NearestSearch(random() % 6);
     parameters.metric = Metric(random() % 3);
-    parameters.slopes = SlopeRule(random() % 4);
+    parameters.slopes = SlopeRule(random() % 5);
+    parameters.drift_weights = DriftWeights(random() % 3);
+    parameters.drift_step_q16 = std::int32_t(7 + random() % (kDriftStepLimit - 6));
     parameters.active_areas = std::uint8_t(random() % 2);
     parameters.displace_iterations = std::int32_t(random() % 1001);
     parameters.sweeps_per_tick = std::int32_t(random() % 1001);
@@ -404,6 +434,11 @@ TEST_F(Thesis, DescriptionsGiveTheSameParametersAgain) {
     parameters.materials[0].roughness_q16 = std::int32_t(random() % 65537);
     parameters.materials[0].slope_threshold_q = std::int32_t(random() % (1u << (random() % 24)));
     parameters.materials[0].diagonal_threshold_q = diagonalThreshold(parameters.materials[0].slope_threshold_q);
+    const double repose = std::atan2(parameters.materials[0].slope_threshold_q, cell_q);
+    parameters.materials[0].repose_q16 =
+        std::min(std::int32_t(std::lround(repose * 2 / std::numbers::pi * kOneQ16)), kReposeLimit);
+    parameters.materials[0].diffusion_q16 = std::int32_t(random() % (kDiffusionLimit + 1));
+    parameters.materials[0].friction_inverse_q32 = std::int32_t(random() % 2147000000);
     parameters.obstacle_threshold_q = std::int32_t(random() % 100000);
     parameters.penetration_divider_q = std::int32_t(1 + random() % 100000);
     parameters.spread_cells = std::int32_t(1 + random() % 64);
@@ -411,7 +446,7 @@ TEST_F(Thesis, DescriptionsGiveTheSameParametersAgain) {
     parameters.active_margin_cells = std::int32_t(random() % 4097);
     parameters.frustum_height_q = std::int32_t(random() % 530000000);
     std::string assignments;
-    for (const std::string& line : describeParameters(parameters, cell_q)) {
+    for (const std::string& line : describeParameters(pack, parameters)) {
       std::istringstream words(line);
       std::string name, value;
       words >> name >> value;
@@ -436,8 +471,10 @@ TEST_F(Thesis, TheReadmeListsEveryNameWithItsRangeAndDefault) {
     rows[name.substr(0, name.find(' '))] = {trim(range), trim(otherwise)};
     names.push_back(name.substr(0, name.find(' ')));
   }
+  ScenePack pack;
+  pack.cell_q = 500;
   std::map<std::string, std::string> defaults_by_name;
-  for (const std::string& line : describeParameters(NamedSettings().parameters, 500))
+  for (const std::string& line : describeParameters(pack, NamedSettings().parameters))
     defaults_by_name[line.substr(0, line.find(' '))] = line.substr(line.find(' ') + 1);
   EXPECT_EQ(names.size(), namedParameters().size());
   for (const NamedParameter& parameter : namedParameters()) {
@@ -447,7 +484,7 @@ TEST_F(Thesis, TheReadmeListsEveryNameWithItsRangeAndDefault) {
     std::string expected = "none";
     if (defaults_by_name.contains(name)) expected = defaults_by_name[name];
     if (name.starts_with("num") && !parameter.fixed_because.empty()) expected = "0";
-    if (name == "slopeThreshold") expected = "[soil]'s repose_deg";
+    if (name == "slopeThreshold" || name == "angleOfRepose") expected = "[soil]'s repose_deg";
     if (name == "jumpFloodingVariant") expected = "JFA";
     EXPECT_EQ(rows[name][1], expected) << name;
   }

@@ -63,7 +63,7 @@ class DriftSweepOracle {
  private:
   std::int64_t rate(std::size_t cell) const {
     const std::int64_t diffusion = before_.rulesOf(parameters_, cell).diffusion_q16;
-    return std::min<std::int64_t>((diffusion * step_.step + kOneQ16 / 2) / kOneQ16, kOneQ16 / 4);
+    return std::min<std::int64_t>((diffusion * step_.step + kOneQ16 / 2) / kOneQ16, kOneQ16 / 8);
   }
 
   std::int64_t diffused(std::size_t a, std::size_t b) const {
@@ -102,10 +102,10 @@ class DriftSweepOracle {
 }  // namespace
 
 int oracleDriftSteps(const Parameters& parameters) {
-  // Units of time * 2^16; over an edge goes a quarter at most in each step, and none takes more than one unit.
+  // No step takes more than a unit of time, nor may flows grow by more than an eighth of what differences do.
   std::int64_t count = ceilOf(parameters.drift_step_q16, kOneQ16);
   for (const MaterialRules& material : parameters.materials)
-    count = std::max(count, ceilOf(Wide(4) * fastestFlow(parameters, material) * parameters.drift_step_q16,
+    count = std::max(count, ceilOf(Wide(8) * fastestFlow(parameters, material) * parameters.drift_step_q16,
                                    std::int64_t(kOneQ16) * kOneQ16));
   return int(std::max<std::int64_t>(count, 1));
 }

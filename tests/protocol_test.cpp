@@ -23,7 +23,10 @@ Bytes noise(std::size_t size, std::uint64_t seed = 1) {
 }
 
 TickUpdate sampleTick(std::size_t tile_bytes) {
-  return {77, 0x1234567890abcdefu, {{1, -2, 3, 4, 5, 6, 7}, {-8, 9, -10, 11, 12, 13, 65535}}, Bytes(tile_bytes, 9)};
+  return {77,
+          0x1234567890abcdefu,
+          {{1, -2, 3, 4, 5, 6, 7, 1}, {-8, 9, -10, 11, 12, 13, 65535, 65536}},
+          Bytes(tile_bytes, 9)};
 }
 
 /// No field has its default.
@@ -33,14 +36,12 @@ Parameters sampleParameters() {
   p.nearest = NearestSearch::jump_flooding_squared;
   p.metric = Metric::chebyshev;
   p.slopes = SlopeRule::scatter;
+  p.drift_weights = DriftWeights::displacement;
   p.active_areas = 0;
   p.displace_iterations = 11;
   p.sweeps_per_tick = 12;
-  p.materials[0].compression_q16 = 13;
-  p.materials[0].compaction_limit_q16 = 14;
-  p.materials[0].roughness_q16 = 15;
-  p.materials[0].slope_threshold_q = kNeverSteep;
-  p.materials[0].diagonal_threshold_q = 17;
+  p.drift_step_q16 = 13;
+  p.materials = {{kNeverSteep, 31, 32, 33, 34, 35, 36, 37}, {41, 42, 43, 44, 45, 46, 47, 48}};
   p.obstacle_threshold_q = 18;
   p.penetration_divider_q = 19;
   p.spread_cells = 20;
@@ -96,7 +97,7 @@ bool equal(const Message& a, const Message& b) {
         if constexpr (std::is_same_v<T, TickUpdate>) {
           return first.tick == second.tick && first.state_hash == second.state_hash && first.poses == second.poses &&
                  first.tiles == second.tiles && first.parameters == second.parameters &&
-                 first.craters == second.craters;
+                 first.craters == second.craters && first.snowfalls == second.snowfalls;
         } else {
           return first == second;
         }
@@ -197,19 +198,34 @@ TEST(Parameters, GoRoundTripInATickUpdate) {
 TEST(Parameters, AreOfTheOrderAndSizeThatTheProtocolStates) {
   ByteWriter writer;
   putParameters(writer, sampleParameters());
-  const Bytes expected = {2, 5, 2,  3,  0, 11, 0,   0,   0,   12,  0,  0,  0, 13, 0,  0,  0, 14, 0,
-                          0, 0, 15, 0,  0, 0,  255, 255, 255, 127, 17, 0,  0, 0,  18, 0,  0, 0,  19,
-                          0, 0, 0,  20, 0, 0,  0,   5,   0,   0,   0,  22, 0, 0,  0,  23, 0, 0,  0};
-  EXPECT_EQ(writer.bytes, expected);
-  EXPECT_EQ(expected.size(), parametersBytes(1));
+  ByteWriter expected;
+  for (const int byte : {2, 5, 2, 3, 1, 0}) expected.put(std::uint8_t(byte));
+  for (const std::int32_t number : {11, 12, 13, 18, 19, 20, 5, 22, 23}) expected.put(number);
+  expected.put(std::uint8_t(2));
+  for (const std::int32_t number : {kNeverSteep, 31, 32, 33, 34, 35, 36, 37, 41, 42, 43, 44, 45, 46, 47, 48})
+    expected.put(number);
+  EXPECT_EQ(writer.bytes, expected.bytes);
+  EXPECT_EQ(writer.bytes.size(), 43u + 2 * 32u);
+  EXPECT_EQ(writer.bytes.size(), parametersBytes(2));
 }
 
 TEST(Parameters, OutOfRangeAreRejected) {
   void (*const spoil[])(Parameters&) = {
-      [](Parameters& p) { p.displacement = Displacement(3); },
+      [](Parameters& p) { p.displacement = Displacement(4); },
       [](Parameters& p) { p.nearest = NearestSearch(6); },
       [](Parameters& p) { p.metric = Metric(3); },
-      [](Parameters& p) { p.slopes = SlopeRule(4); },
+      [](Parameters& p) { p.slopes = SlopeRule(5); },
+      [](Parameters& p) { p.drift_weights = DriftWeights(3); },
+      [](Parameters& p) { p.drift_step_q16 = 0; },
+      [](Parameters& p) { p.drift_step_q16 = kDriftStepLimit + 1; },
+      [](Parameters& p) {
+        p.slopes = SlopeRule::drift;
+        p.drift_step_q16 = kDriftStepLimit;
+        p.sweeps_per_tick = 1000;
+      },
+      [](Parameters& p) { p.materials[1].diffusion_q16 = kDiffusionLimit + 1; },
+      [](Parameters& p) { p.materials[1].friction_inverse_q32 = -1; },
+      [](Parameters& p) { p.materials[1].repose_q16 = kReposeLimit + 1; },
       [](Parameters& p) { p.active_areas = 2; },
       [](Parameters& p) { p.displace_iterations = 1001; },
       [](Parameters& p) { p.sweeps_per_tick = -1; },
@@ -246,18 +262,64 @@ TEST(Parameters, OfAWrongSizeAreRejected) {
   const auto at = std::search(raw->payload.begin(), raw->payload.end(), writer.bytes.begin(), writer.bytes.end());
   ASSERT_NE(at, raw->payload.end());
   std::uint8_t& length = *(at - 4);  // of the vector, its lowest byte
-  ASSERT_EQ(length, parametersBytes(1));
-  for (const int wrong : {0, 1, int(parametersBytes(1)) - 1, int(parametersBytes(1)) + 1, 255}) {
+  ASSERT_EQ(length, parametersBytes(2));
+  for (const int wrong : {0, 1, int(parametersBytes(2)) - 1, int(parametersBytes(2)) + 1, 255}) {
     length = std::uint8_t(wrong);
     const auto decoded = decodeMessage(
         rawFrame(MessageKind::tick_update, 0, std::uint32_t(raw->payload.size()), raw->payload), Sender::server);
     ASSERT_FALSE(decoded) << wrong;
     // What reaches past the table's end is the verifier's.
-    const bool fits = wrong < int(parametersBytes(1));
+    const bool fits = wrong < int(parametersBytes(2));
     EXPECT_TRUE(contains(decoded.error(), "parameters of a wrong size") ||
                 (!fits && contains(decoded.error(), "broken table")))
         << decoded.error();
   }
+}
+
+/// A tick with which two snowfalls come. No field has its default.
+TickUpdate snowyTick() {
+  TickUpdate tick = sampleTick(1);
+  tick.poses.clear();
+  tick.snowfalls = {{{-1, 2, INT32_MAX, 4}, INT64_MIN, 6, 7, 0xfffffffeu}, {{8, 9, 10, 11}, 12, 13, 14, 15}};
+  return tick;
+}
+
+TEST(Snowfalls, GoRoundTripInATickUpdateWithAnyValues) {
+  const auto frame = encodeMessage(snowyTick());
+  ASSERT_TRUE(frame);
+  const auto decoded = decodeMessage(*frame, Sender::server);
+  ASSERT_TRUE(decoded) << decoded.error();
+  EXPECT_TRUE(equal(snowyTick(), *decoded));
+  for (std::size_t size = 0; size < frame->size(); ++size)
+    EXPECT_FALSE(decodeMessage(std::span(*frame).first(size), Sender::server)) << size;
+}
+
+TEST(Snowfalls, OfAWrongSizeOrTooManyAreRejected) {
+  const auto frame = encodeMessage(snowyTick());
+  ASSERT_TRUE(frame);
+  auto raw = decodeFrame(*frame, Sender::server);
+  ASSERT_TRUE(raw) << raw.error();
+  ByteWriter writer;
+  for (const Snowfall& snowfall : snowyTick().snowfalls) putSnowfall(writer, snowfall);
+  ASSERT_EQ(writer.bytes.size(), 2 * kSnowfallBytes);
+  const auto at = std::search(raw->payload.begin(), raw->payload.end(), writer.bytes.begin(), writer.bytes.end());
+  ASSERT_NE(at, raw->payload.end());
+  std::uint8_t& length = *(at - 4);  // of the vector, its lowest byte
+  ASSERT_EQ(length, 2 * kSnowfallBytes);
+  for (const int wrong : {1, int(kSnowfallBytes) - 1, int(kSnowfallBytes) + 1, 2 * int(kSnowfallBytes) - 1}) {
+    length = std::uint8_t(wrong);
+    const auto decoded = decodeMessage(
+        rawFrame(MessageKind::tick_update, 0, std::uint32_t(raw->payload.size()), raw->payload), Sender::server);
+    ASSERT_FALSE(decoded) << wrong;
+    EXPECT_TRUE(contains(decoded.error(), "snowfalls of a wrong size")) << decoded.error();
+  }
+  TickUpdate many = snowyTick();
+  many.snowfalls.resize(kSnowfallsLimit + 1);
+  const auto too_many = encodeMessage(many);
+  ASSERT_TRUE(too_many);
+  const auto decoded = decodeMessage(*too_many, Sender::server);
+  ASSERT_FALSE(decoded);
+  EXPECT_TRUE(contains(decoded.error(), "snowfalls of a wrong size")) << decoded.error();
 }
 
 TEST(Craters, GoRoundTripInATickUpdate) {

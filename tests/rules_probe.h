@@ -4,6 +4,7 @@
 #include "../shaders/rules/crater.h"
 #include "../shaders/rules/crater_hash.h"
 #include "../shaders/rules/displace.h"
+#include "../shaders/rules/drift.h"
 #include "../shaders/rules/exchange.h"
 #include "../shaders/rules/flood.h"
 #include "../shaders/rules/flow.h"
@@ -12,10 +13,11 @@
 #include "../shaders/rules/penetration.h"
 #include "../shaders/rules/raster.h"
 #include "../shaders/rules/slope.h"
+#include "../shaders/rules/snowfall.h"
 
 SPOOR_RULES_BEGIN
 
-RULE_CONST kProbeCount = 24;
+RULE_CONST kProbeCount = 27;
 
 /// A number in [low, high] for draw `i` of a seed; high - low < 2^31.
 RULE int drawn(int seed, int i, int low, int high) {
@@ -261,6 +263,67 @@ RULE int probeCraterHash(int seed) {
   return folded(folded(sum, int(craterTag(first, last))), craterCapacity(drawnAmount(seed, 310, 1 << 30)));
 }
 
+RULE DriftStep drawnStep(int seed) {
+  DriftStep step;
+  step.weights = drawn(seed, 320, 0, 2);
+  step.step = 1 + drawnAmount(seed, 321, 65535);
+  step.quarter = 1 + drawnAmount(seed, 323, (1 << 29) - 1);
+  step.shift = 30 - topBit(uint(step.quarter));
+  step.inverse_quarter = reciprocal(uint(step.quarter) << uint(step.shift + 1)) >> 1u;  // near enough
+  return step;
+}
+
+RULE DriftCell drawnDriftCell(int seed, int i, int height) {
+  DriftCell cell;
+  cell.height = height;
+  cell.soil = drawnAmount(seed, i, 1073741823);
+  cell.room = drawn(seed, i + 2, 0, 1) == 0 ? 2147483646 : drawnAmount(seed, i + 3, 2147483646);
+  cell.rest = 1 + drawnAmount(seed, i + 5, drawn(seed, i + 7, 0, 1) == 0 ? 62258 : 2147483645);
+  cell.rate = drawn(seed, i + 8, 0, 3) == 0 ? 1 << 14 : drawnAmount(seed, i + 9, 1 << 14);
+  cell.inverse = 0xffffffffu / uint(maxInt(65536 - cell.rest, 1));
+  return cell;
+}
+
+RULE int probeDrift(int seed, int height_a, int height_b) {
+  DriftStep step = drawnStep(seed);
+  DriftCell a = drawnDriftCell(seed, 330, height_a), b = drawnDriftCell(seed, 342, height_b);
+  int push = drawn(seed, 354, 0, 2) == 0 ? 0 : drawn(seed, 355, -kDriftMost, kDriftMost) >> drawn(seed, 356, 0, 22);
+  int moved = drawnAmount(seed, 357, 2147483646);
+  uint phase = driftPhase(drawnAmount(seed, 359, 1 << 30), drawn(seed, 361, 0, 1000));
+  int dither = driftDither(drawn(seed, 362, 0, 1 << 24), drawn(seed, 363, 0, 1 << 24), drawn(seed, 364, 0, 1), phase);
+  int sum = folded(folded(seed, int(phase)), dither);
+  sum = folded(sum, timesQ8(drawnAmount(seed, 365, kDriftMost), drawnShare(seed, 367)));
+  sum = folded(sum, withSign(moved, push));
+  sum = folded(sum, driftWeight(step, moved, minInt(a.rest, 62259), a.inverse));
+  return folded(sum, driftFlow(step, a, b, push, dither));
+}
+
+RULE int probePush(int seed) {
+  wide total = wideMul(drawnAmount(seed, 370, 1 << 26), drawnAmount(seed, 372, 1000000));
+  int most = (1 << 30) / drawn(seed, 374, 1, 64);
+  int strength = pushStrength(total, drawnAmount(seed, 375, 1 << 24), most);
+  int direction = drawn(seed, 377, 0, 3) == 0 ? 1 << 30 : drawn(seed, 378, -1073741823, 1073741823);
+  int along = pushAlong(strength, direction);
+  int sum = folded(folded(seed, strength), along);
+  sum = folded(sum, pushedSoil(along, drawnAmount(seed, 379, 2147483646) + 1));
+  int height = drawn(seed, 381, -kHeightLimit, kHeightLimit);
+  int underside = drawn(seed, 382, 0, 3) == 0
+                      ? kNoUnderside
+                      : clampInt(height + drawn(seed, 383, -900, 900), -kHeightLimit, kNoUnderside);
+  return folded(sum, isContact(height, underside, drawn(seed, 384, 0, 900)) ? 1 : 0);
+}
+
+RULE int probeSnow(int seed) {
+  SnowDepth depth;
+  depth.layers = drawnAmount(seed, 390, 1 << 23);
+  depth.share = mix32(uint(seed) * 0x85ebca77u + 392u) << uint(drawn(seed, 393, 0, 1) * 31);
+  uint snow_seed = mix32(uint(seed) + 7u);
+  int x = drawn(seed, 394, 0, 1 << 24), y = drawn(seed, 395, 0, 1 << 24);
+  int fallen = snowOn(snow_seed, x, y, depth);
+  int sum = folded(folded(seed, snowFlake(snow_seed, x, y, depth)), fallen);
+  return folded(sum, snowGround(drawn(seed, 396, -kHeightLimit, kHeightLimit), fallen));
+}
+
 /// Result number `which` (0 .. kProbeCount - 1) for a seed.
 RULE int probeRule(int which, int seed) {
   int height_a = drawn(seed, 60, -kHeightLimit, kHeightLimit);
@@ -302,6 +365,9 @@ RULE int probeRule(int which, int seed) {
   if (which == 20) return probeCrater(seed);
   if (which == 21) return probeCraterSum(seed);
   if (which == 22) return probeCraterHash(seed);
+  if (which == 23) return probeDrift(seed, height_a, height_b);
+  if (which == 24) return probePush(seed);
+  if (which == 25) return probeSnow(seed);
   int request = drawn(seed, 73, 1, kHeightLimit);
   return grantedShare(request, drawn(seed, 74, 0, kHeightLimit), wideAdd(wideFrom(request), wideMul(small, threshold)));
 }

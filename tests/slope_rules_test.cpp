@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kNone = rules::kNoUnderside;
 constexpr SlopeRule kRules[] = {SlopeRule::flux, SlopeRule::interleaved, SlopeRule::scatter};
+constexpr SlopeRule kAllRules[] = {SlopeRule::exchange, SlopeRule::flux, SlopeRule::interleaved, SlopeRule::scatter,
+                                   SlopeRule::drift};
 
 class SlopeRules : public OnEveryBackend {};
 
@@ -110,8 +112,10 @@ void checkRandomWorld(const BackendCase& backend_case, SlopeRule rule, int colum
   Cells ground;
   for (int i = 0; i < columns * rows; ++i) ground.push_back(int(engine() % relief));
   ScenePack pack = groundPack(columns, rows, ground, seed % 3 == 0 ? 500 : 100000);
-  pack.parameters = randomParameters(seed);
+  const int material_count = seed % 2 == 0 ? 4 : 1;
+  pack.parameters = randomParameters(seed, material_count);
   pack.parameters.slopes = rule;
+  if (material_count > 1) addMaterials(pack, material_count, seed);
   const int sweeps = 1 + int(seed % 9);
   SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(columns) + " x " + std::to_string(rows) + ", " +
                std::to_string(sweeps) + " sweeps, " + describe(pack.parameters));
@@ -128,7 +132,7 @@ void checkRandomWorld(const BackendCase& backend_case, SlopeRule rule, int colum
 TEST_P(SlopeRules, EqualTheOracleOnWorldsOfAnySizeAndKeepTheSum) {
   constexpr std::pair<int, int> sizes[] = {{77, 131}, {1, 200}, {65, 1}, {129, 66}};
   for (std::uint32_t seed = 0; seed < (GetParam().slow() ? 8u : 24u); ++seed)
-    for (const SlopeRule rule : kRules) {
+    for (const SlopeRule rule : kAllRules) {
       const auto& [columns, rows] = sizes[seed % 4];
       ASSERT_NO_FATAL_FAILURE(checkRandomWorld(GetParam(), rule, columns, rows, seed));
     }

@@ -209,7 +209,7 @@ class ConsoleOnPipe : public ::testing::Test {
   std::vector<std::string> answerTo(const std::vector<std::string>& pieces) {
     std::vector<std::string> said;
     std::promise<void> ended;
-    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) {
+    const Console console(pipe_[0], queue_, craters_, snowfalls_, [&](const std::string& line) {
       said.push_back(line);
       if (line == "console: the input has ended") ended.set_value();
     });
@@ -222,6 +222,7 @@ class ConsoleOnPipe : public ::testing::Test {
   int pipe_[2] = {-1, -1};
   ChangeQueue queue_;
   CraterQueue craters_;
+  SnowfallQueue snowfalls_;
 };
 
 TEST_F(ConsoleOnPipe, LinesBecomeChangesHoweverTheyArrive) {
@@ -251,6 +252,19 @@ TEST_F(ConsoleOnPipe, CratersAreQueuedAndBadOnesSaid) {
   EXPECT_EQ(queue_.tryTake().size(), 1u);
 }
 
+TEST_F(ConsoleOnPipe, SnowfallsAreQueuedAndBadOnesSaid) {
+  const auto said =
+      answerTo({"snow 0,1,5,6,36000,2\n", " snow 1,2,3,4,5\nsnow 0,0,1,1,1,1,9\nsnow\nsnow 0,0,1,1,nan,1\n"});
+  ASSERT_EQ(said.size(), 4u);
+  EXPECT_EQ(said[0], "console: snow: '1,2,3,4,5' is not X0,Y0,X1,Y1,MM_PER_HOUR,SECONDS[,SEED]; there is none");
+  EXPECT_EQ(said[1], "console: 'snow' is not NAME=VALUE; nothing changes");
+  EXPECT_NE(said[2].find("MM_PER_HOUR: 'nan' is not a number within"), std::string::npos);
+  const auto snowfalls = snowfalls_.tryTake();
+  ASSERT_EQ(snowfalls.size(), 2u);
+  EXPECT_EQ(snowfalls[0], (SnowfallWish{{0, 1, 5, 6}, 36000, 2, {}}));
+  EXPECT_EQ(snowfalls[1].seed, 9u);
+}
+
 TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
   const auto said =
       answerTo({"hello\nroughness=7\nterrainSize=3\n" + std::string(1, '\0') + "\n",
@@ -268,7 +282,8 @@ TEST_F(ConsoleOnPipe, BadLinesAreSaidAndChangeNothing) {
 TEST_F(ConsoleOnPipe, EndsWhileItsInputStaysOpen) {
   std::vector<std::string> said;
   {
-    const Console console(pipe_[0], queue_, craters_, [&](const std::string& line) { said.push_back(line); });
+    const Console console(pipe_[0], queue_, craters_, snowfalls_,
+                          [&](const std::string& line) { said.push_back(line); });
   }
   EXPECT_TRUE(said.empty());
 }

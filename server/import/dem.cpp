@@ -1,7 +1,5 @@
 #include "server/import/dem.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
 #include <fmt/format.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
@@ -9,11 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <memory>
 
 #include "server/import/fill_missing.h"
 #include "server/import/georeference.h"
+#include "server/import/raster_file.h"
 #include "server/import/units.h"
 #include "shaders/rules/limits.h"
 #include "shared/world/pack.h"
@@ -25,33 +22,6 @@ namespace {
 constexpr std::int64_t kSampleLimit = std::int64_t(kPackBytesLimit / sizeof(std::int32_t) / 16 * 15);
 constexpr int kSideLimit = 1 << 20;        // samples along a side (validatePack)
 constexpr double kGroundLimitQ = 1 << 29;  // of a base height (validatePack)
-
-/// Keeps GDAL from writing to stderr and remembers the first thing that it said went wrong.
-class GdalQuiet {
- public:
-  GdalQuiet() { CPLPushErrorHandlerEx(&GdalQuiet::keep, this); }
-  ~GdalQuiet() { CPLPopErrorHandler(); }
-  GdalQuiet(const GdalQuiet&) = delete;
-  GdalQuiet& operator=(const GdalQuiet&) = delete;
-
-  /// In one line.
-  std::string message() const { return first_.empty() ? "no reason given" : first_; }
-  bool failed() const { return !first_.empty(); }
-
- private:
-  static void CPL_STDCALL keep(CPLErr level, CPLErrorNum, const char* text) {
-    auto& self = *static_cast<GdalQuiet*>(CPLGetErrorHandlerUserData());
-    if (level < CE_Failure || self.failed()) return;
-    self.first_ = text;
-    std::replace(self.first_.begin(), self.first_.end(), '\n', ' ');
-  }
-  std::string first_;
-};
-
-struct CloseDataset {
-  void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<void, CloseDataset>;
 
 /// How a value of the file becomes a height.
 struct ValueRule {
@@ -75,18 +45,6 @@ struct Window {
 };
 
 Error demError(const DemRequest& request, const std::string& why) { return {request.file + ": " + why}; }
-
-Result<Dataset> openRaster(const DemRequest& request, const GdalQuiet& quiet) {
-  static const bool registered = (GDALAllRegister(), true);
-  (void)registered;
-  // Also keeps out names that GDAL would take for a web address or a database.
-  if (!std::filesystem::is_regular_file(request.file)) return demError(request, "no such file");
-  Dataset dataset(GDALOpenEx(request.file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                             nullptr, nullptr));
-  if (!dataset) return demError(request, "not a raster that can be read: " + quiet.message());
-  if (GDALGetRasterCount(dataset.get()) < 1) return demError(request, "holds no band of samples");
-  return dataset;
-}
 
 /// Metres per unit of a band's heights, by the names that GDAL gives units.
 double metresPerUnit(const std::string& unit) {
@@ -250,7 +208,7 @@ Status readHeights(const DemRequest& request, GDALRasterBandH band, const Window
 
 Result<Dem> readDem(const DemRequest& request, std::vector<std::string>& notes) {
   const GdalQuiet quiet;
-  const Result<Dataset> dataset = openRaster(request, quiet);
+  const Result<RasterFile> dataset = openRaster(request.file, quiet);
   if (!dataset) return Error{dataset.error()};
   const int columns = GDALGetRasterXSize(dataset->get());
   const int rows = GDALGetRasterYSize(dataset->get());

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "server/import/units.h"
+#include "server/named_parameters.h"
 #include "shaders/rules/limits.h"
 
 namespace spoor {
@@ -15,9 +15,11 @@ namespace {
 constexpr double kSamplesPerCellLimit = 64;  // validatePack
 constexpr double kTwo32 = 4294967296.0;
 
-/// Share of side neighbours among a DEM's samples whose slope is above the pack's threshold.
+/// Share of side neighbours among a DEM's samples whose slope is above the threshold of each of the pack's materials.
 double steepShare(const ScenePack& pack, const Dem& dem) {
-  const double slope = double(pack.parameters.materials[0].slope_threshold_q) / pack.cell_q;
+  const double slope =
+      double(std::ranges::max(pack.parameters.materials, {}, &MaterialRules::slope_threshold_q).slope_threshold_q) /
+      pack.cell_q;
   const double rest_x_q = slope * dem.sample_x_m * rules::kUnitsPerMetre;
   const double rest_y_q = slope * dem.sample_y_m * rules::kUnitsPerMetre;
   std::int64_t steep_count = 0;
@@ -33,17 +35,11 @@ double steepShare(const ScenePack& pack, const Dem& dem) {
 }  // namespace
 
 void setReposeAngle(ScenePack& pack, double repose_deg, std::vector<std::string>& notes) {
-  const double rise_q = std::tan(repose_deg * std::numbers::pi / 180.0) * pack.cell_q;
-  // A hair is added so that the tangent of 45 degrees, just under 1 in floats, keeps its last unit.
-  const auto threshold = [](double units) { return std::int32_t(std::floor(units + 1e-6)); };
-  pack.parameters.materials[0].slope_threshold_q = std::max(1, threshold(rise_q));
-  pack.parameters.materials[0].diagonal_threshold_q = std::max(1, threshold(rise_q * std::numbers::sqrt2));
-  if (threshold(rise_q) < 1) {
+  if (setRepose(repose_deg, pack.cell_q, pack.parameters.materials[0]))
     notes.push_back(
         fmt::format("soil.repose_deg: {} degrees are less than 0.1 mm per cell: slope threshold rounded up to "
                     "0.1 mm",
                     plainNumber(repose_deg)));
-  }
 }
 
 Status setWorldSize(ScenePack& pack, double width_m, double height_m) {
@@ -101,6 +97,7 @@ Status setGround(ScenePack& pack, Dem dem, const std::string& file, std::vector<
 Status checkPack(const ScenePack& pack) {
   if (Status status = validatePack(pack); !status) return status;
   std::size_t bytes = pack.samples.height_q.size() * sizeof(std::int32_t) + (1 << 16);
+  bytes += pack.material_map.image.material.size();
   for (const Mesh& mesh : pack.meshes) {
     bytes += mesh.vertices.size() * 12 + mesh.triangles.size() * 12 + mesh.edges.size() * 8 + mesh.name.size() + 16;
   }

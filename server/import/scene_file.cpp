@@ -132,11 +132,21 @@ void readDemBase(TableReader& base, const SceneErrors& errors, WorldSize size, T
   }
 }
 
+/// Sweeps of drift are split where they are long; says which key asks for too many.
+void checkParameters(TableReader& thesis, const Parameters& parameters) {
+  if (sweepsOf(parameters) <= kIterationsLimit) return;
+  thesis.wrong(
+      thesis.has("driftStep") ? "driftStep" : "slopes",
+      fmt::format("{} sweeps a tick of {} steps each (so that diffusion * driftStep is 1/8 at most in each) are {}; "
+                  "the limit is {}",
+                  parameters.sweeps_per_tick, driftSteps(parameters), sweepsOf(parameters), kIterationsLimit));
+}
+
 /// Reads all tables; on an error, which SceneErrors holds, the draft is left half made.
 void readScene(TableReader& file, const SceneErrors& errors, const std::filesystem::path& path, SceneDraft& draft) {
   readHead(file, path, draft.scene.pack);
   TableReader thesis = file.table("thesis");
-  const std::vector<NamedValue> named = readNamedValues(thesis);
+  const std::vector<NamedValue> named = readNamedValues(thesis, NamedKeys::all);
   thesis.finish();
   if (errors.failed()) return;
   TableReader world = file.table("world");
@@ -145,6 +155,9 @@ void readScene(TableReader& file, const SceneErrors& errors, const std::filesyst
   if (errors.failed()) return;
   TableReader soil = file.table("soil");
   readSoil(soil, thesis, named, draft.scene.pack, draft.scene.notes);
+  readMaterialTables(file, soil, thesis, errors, draft);
+  if (errors.failed()) return;
+  checkParameters(thesis, draft.scene.pack.parameters);
   TableReader base = file.table("base");
   const std::string kind = base.choice("kind", {"noise", "dem"});
   draft.scene.pack.soil_depth_q = toUnits(base.number("soil_depth_m", {0, 20000, "m"}, 1));
@@ -155,6 +168,9 @@ void readScene(TableReader& file, const SceneErrors& errors, const std::filesyst
   } else {
     readDemBase(base, errors, size, world, draft);
   }
+  if (errors.failed()) return;
+  readMaterialMap(file, errors, draft);
+  readSnowfallTables(file, errors, draft);
   if (errors.failed()) return;
   readMeshTables(file, errors, draft);
   if (errors.failed()) return;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/import/mesh_file.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr Range kOffsetRange{-1600, 1600, "m"};
 constexpr Range kLengthRange{0, 1600, "m"};
 constexpr Range kScaleRange{1e-6, 1e6, ""};
+constexpr Range kSizeRange{1e-4, 1, ""};
 constexpr double kSpeedLimitQ = 1 << 20;
 constexpr double kPathMarginM = 1000;  // how far beyond the world's edge a path may lead
 
@@ -112,6 +114,32 @@ VehicleShape readShape(TableReader& table) {
   return shape;
 }
 
+/// How large a body is: a share of its mesh, or from one to another between two times.
+void readSize(TableReader& table, const ScenePack& pack, Body& body, std::vector<std::string>& notes) {
+  const Span size = table.sequence("size", kSizeRange, 1);
+  const auto share = [](double value) { return std::max(std::int32_t(std::llround(value * kFullScale)), 1); };
+  body.first_scale_q16 = share(size.least);
+  body.last_scale_q16 = share(size.most);
+  const bool changes = size.least != size.most;
+  if (changes && !table.has("size_s")) table.wrong("size_s", "missing; [from, to] of the change of size");
+  if (!table.has("size_s")) return;
+  if (!changes) return table.wrong("size_s", "goes with size = [first, last]");
+  const Span time_s = table.span("size_s", {0, 1e6, "s"});
+  const auto tick = [&](double at_s) {
+    const double exact = at_s * pack.ticks_per_second;
+    if (std::abs(exact - std::round(exact)) > 1e-6)
+      notes.push_back(fmt::format("{}: {} s rounded to tick {}", table.keyPath("size_s"), plainNumber(at_s),
+                                  plainNumber(std::round(exact))));
+    return std::int32_t(std::llround(exact));
+  };
+  body.first_scale_tick = tick(time_s.least);
+  body.last_scale_tick = tick(time_s.most);
+}
+
+std::int32_t readForce(TableReader& table) {
+  return std::int32_t(std::llround(table.number("force_n", {0, kForceLimit, "N"}, 0)));
+}
+
 }  // namespace
 
 std::string filePath(const SceneDraft& draft, const std::string& named) { return (draft.directory / named).string(); }
@@ -156,6 +184,8 @@ void readBodyTables(TableReader& file, SceneDraft& draft) {
     body.lift_q = toUnits(table.number("lift_m", kLengthRange, 0));
     body.phase_q = toUnits(table.number("phase_m", kLengthRange, 0));
     body.follows_slope = table.flag("follows_slope", false) ? 1 : 0;
+    body.force_n = readForce(table);
+    readSize(table, draft.scene.pack, body, draft.scene.notes);
     table.finish();
     draft.scene.pack.bodies.push_back(std::move(body));
   }
@@ -171,6 +201,7 @@ void readVehicleTables(TableReader& file, SceneDraft& draft) {
     wheel.path_index = chassis.path_index;
     wheel.mesh_index = lookUp(table, "wheel", draft.meshes, "mesh");
     const VehicleShape shape = readShape(table);
+    wheel.force_n = readForce(table);
     table.finish();
 
     chassis.name = name + ".chassis";

@@ -26,6 +26,17 @@ void readVehicleTables(TableReader& file, SceneDraft& draft);
 /// [craters] and every [[crater]] (crater_tables.cpp); after the size of the world.
 void readCraterTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
 
+/// Every [[material]], if any, instead of the one of [soil] (material_tables.cpp); after the cell size and readSoil.
+void readMaterialTables(TableReader& file, TableReader& soil, TableReader& thesis, const SceneErrors& errors,
+                        SceneDraft& draft);
+/// [materials]: which of them lies where (material_map.cpp); after the size of the world.
+void readMaterialMap(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
+/// Every [[snowfall]] (snowfall_tables.cpp); after the size of the world.
+void readSnowfallTables(TableReader& file, const SceneErrors& errors, SceneDraft& draft);
+
+/// "#rrggbb"; nothing where it is another text.
+std::optional<std::array<std::uint8_t, 3>> parseColour(std::string_view text);
+
 /// A file named in a scene, from the scene's directory.
 std::string filePath(const SceneDraft& draft, const std::string& named);
 

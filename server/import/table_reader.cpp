@@ -68,6 +68,17 @@ std::int64_t TableReader::integer(std::string_view key, const Range& range, std:
 }
 
 Span TableReader::span(std::string_view key, const Range& range, std::optional<double> otherwise) {
+  const Span pair = pairOf(key, range, otherwise, "[least, most]");
+  if (pair.least > pair.most)
+    wrong(key, fmt::format("{} is more than {}", plainNumber(pair.least), plainNumber(pair.most)));
+  return pair;
+}
+
+Span TableReader::sequence(std::string_view key, const Range& range, std::optional<double> otherwise) {
+  return pairOf(key, range, otherwise, "[first, last]");
+}
+
+Span TableReader::pairOf(std::string_view key, const Range& range, std::optional<double> otherwise, const char* what) {
   const toml::node* node = find(key);
   if (!node || !node->is_array()) {
     const double value = number(key, range, otherwise);
@@ -75,13 +86,12 @@ Span TableReader::span(std::string_view key, const Range& range, std::optional<d
   }
   const toml::array& pair = *node->as_array();
   if (pair.size() != 2) {
-    wrong(key, "must be a number or [least, most]");
+    wrong(key, fmt::format("must be a number or {}", what));
     return {};
   }
-  const auto least = numberOf(pair[0], key, range), most = numberOf(pair[1], key, range);
-  if (!least || !most) return {};
-  if (*least > *most) wrong(key, fmt::format("{} is more than {}", plainNumber(*least), plainNumber(*most)));
-  return {*least, *most};
+  const auto first = numberOf(pair[0], key, range), second = numberOf(pair[1], key, range);
+  if (!first || !second) return {};
+  return {*first, *second};
 }
 
 bool TableReader::flag(std::string_view key, bool otherwise) {
@@ -164,6 +174,12 @@ std::vector<TableReader> TableReader::tables(std::string_view key) {
   for (std::size_t i = 0; i < array->size(); ++i) {
     result.emplace_back(*(*array)[i].as_table(), fmt::format("{}[{}]", keyPath(key), i), errors_);
   }
+  return result;
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> result;
+  for (const auto& [key, node] : table_) result.emplace_back(key.str());
   return result;
 }
 

@@ -33,7 +33,7 @@ struct Range {
   std::string_view unit;
 };
 
-/// What a value may be drawn from; one number: both are the same.
+/// What a value may be drawn from, or what it goes through; one number: both are the same.
 struct Span {
   double least = 0, most = 0;
 };
@@ -51,6 +51,8 @@ class TableReader {
   std::int64_t integer(std::string_view key, const Range& range, std::optional<std::int64_t> otherwise = {});
   /// A number, or [least, most]. Without a default, a missing key is an error.
   Span span(std::string_view key, const Range& range, std::optional<double> otherwise = {});
+  /// A number, or [first, last] in any order.
+  Span sequence(std::string_view key, const Range& range, std::optional<double> otherwise = {});
   bool flag(std::string_view key, bool otherwise);
   std::string text(std::string_view key, std::optional<std::string> otherwise = {});
   /// A text that must be one of `choices`.
@@ -65,6 +67,9 @@ class TableReader {
   /// The tables under a key, [[key]]; none where it is missing.
   std::vector<TableReader> tables(std::string_view key);
 
+  /// All keys, in the order of their letters.
+  std::vector<std::string> keys() const;
+
   /// Reports a wrong value of a key.
   void wrong(std::string_view key, const std::string& why);
   /// Reports the first key that was not read.
@@ -77,6 +82,7 @@ class TableReader {
  private:
   const toml::node* find(std::string_view key);
   std::optional<double> numberOf(const toml::node& node, std::string_view key, const Range& range);
+  Span pairOf(std::string_view key, const Range& range, std::optional<double> otherwise, const char* what);
   void missing(std::string_view key);
 
   const toml::table& table_;

@@ -26,21 +26,22 @@ double readValue(TableReader& thesis, const NamedParameter& parameter) {
   return double(std::min(chosen - parameter.choices.begin(), std::ssize(parameter.choices) - 1));
 }
 
-void apply(const std::vector<NamedValue>& values, std::int32_t cell_q, TableReader& thesis, NamedSettings& settings,
-           std::vector<std::string>& notes) {
-  std::vector<std::string> new_notes;
-  if (const auto error = applyNamed(values, cell_q, settings, new_notes))
-    thesis.wrong(error->parameter->name, error->why);
-  for (const std::string& text : new_notes) notes.push_back(thesis.keyPath(text));
-}
-
 }  // namespace
 
-std::vector<NamedValue> readNamedValues(TableReader& thesis) {
+std::vector<NamedValue> readNamedValues(TableReader& table, NamedKeys keys) {
   std::vector<NamedValue> values;
   for (const NamedParameter& parameter : namedParameters())
-    if (thesis.has(parameter.name)) values.push_back({&parameter, readValue(thesis, parameter)});
+    if ((keys == NamedKeys::all || parameter.isOfMaterial()) && table.has(parameter.name))
+      values.push_back({&parameter, readValue(table, parameter)});
   return values;
+}
+
+void applyToTable(const std::vector<NamedValue>& values, std::int32_t cell_q, TableReader& table,
+                  NamedSettings& settings, std::vector<std::string>& notes) {
+  std::vector<std::string> new_notes;
+  if (const auto error = applyNamed(values, cell_q, settings, new_notes))
+    table.wrong(error->parameter->name, error->why);
+  for (const std::string& text : new_notes) notes.push_back(table.keyPath(text));
 }
 
 Range namedRange(std::string_view name) {
@@ -56,23 +57,24 @@ void refuseBoth(TableReader& thesis, std::string_view key, const TableReader& ot
 
 void readSoil(TableReader& soil, TableReader& thesis, const std::vector<NamedValue>& named, ScenePack& pack,
               std::vector<std::string>& notes) {
-  refuseBoth(thesis, "slopeThreshold", soil, "repose_deg");
+  for (const char* key : {"slopeThreshold", "angleOfRepose"}) refuseBoth(thesis, key, soil, "repose_deg");
   refuseBoth(thesis, "obstacleThreshold", soil, "obstacle_threshold_m");
   refuseBoth(thesis, "numIterationsEvenOutSlopes", soil, "sweeps_per_tick");
   std::vector<NamedValue> preset, single;
-  std::ranges::partition_copy(named, std::back_inserter(preset), std::back_inserter(single),
-                              [](const NamedValue& value) { return value.parameter->read == nullptr; });
+  std::ranges::partition_copy(
+      named, std::back_inserter(preset), std::back_inserter(single),
+      [](const NamedValue& value) { return !value.parameter->isOfMaterial() && value.parameter->isShortName(); });
   NamedSettings settings;
-  apply(preset, pack.cell_q, thesis, settings, notes);
+  applyToTable(preset, pack.cell_q, thesis, settings, notes);
   pack.parameters = settings.parameters;
-  const double repose_deg = soil.number("repose_deg", {0, 89, "degrees"}, kDefaultReposeDeg);
-  if (!thesis.has("slopeThreshold")) setReposeAngle(pack, repose_deg, notes);
+  const double repose_deg = soil.number("repose_deg", {0, kReposeLimitDeg, "degrees"}, kDefaultReposeDeg);
+  if (!thesis.has("slopeThreshold") && !thesis.has("angleOfRepose")) setReposeAngle(pack, repose_deg, notes);
   const double obstacle_m = soil.number("obstacle_threshold_m", {0, 100, "m"}, 0);
   if (soil.has("obstacle_threshold_m")) pack.parameters.obstacle_threshold_q = toUnits(obstacle_m);
   pack.parameters.sweeps_per_tick =
       std::int32_t(soil.integer("sweeps_per_tick", {0, kIterationsLimit, ""}, pack.parameters.sweeps_per_tick));
   settings.parameters = pack.parameters;
-  apply(single, pack.cell_q, thesis, settings, notes);
+  applyToTable(single, pack.cell_q, thesis, settings, notes);
   pack.parameters = settings.parameters;
   pack.patches_per_row = settings.patches_per_row;
   pack.normal_blur_passes = settings.normal_blur_passes;

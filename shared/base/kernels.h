@@ -5,6 +5,7 @@
 
 #include "shaders/rules/crater.h"
 #include "shaders/rules/drift.h"
+#include "shaders/rules/snowfall.h"
 
 namespace spoor {
 
@@ -54,6 +55,8 @@ struct Kernels {
   /// What a crater (rules/crater.h, craterDisplacement) adds to a row of cells, `step` apart, the first at (dx, dy)
   /// from its centre.
   void (*craterRow)(const rules::CraterShape& shape, int dx, int step, int dy, int n, std::int32_t* displacement);
+  /// Adds what fell on a row of cells, `step` apart, the first at (x, y) of the world (rules/snowfall.h, snowOn).
+  void (*snowRow)(rules::uint seed, int x, int step, int y, int n, const rules::SnowDepth& fallen, std::int32_t* depth);
   /// Stage depth: lowers `underside` to a triangle's height along a row (rules/raster.h, triangleHeightAlong).
   void (*lowerAlong)(std::int32_t* underside, int n, int first, int step, int step_fraction, int lowest, int highest);
   /// The same stage: takes undersides away that lie too high above bedrock to be seen (rules/penetration.h).

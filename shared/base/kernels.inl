@@ -100,6 +100,12 @@ void craterRow(const rules::CraterShape& shape, int dx, int step, int dy, int n,
   craterZone<false>(shape, dx, step, dy, end, outer_end, displacement);
 }
 
+void snowRow(rules::uint seed, int x, int step, int y, int n, const rules::SnowDepth& fallen,
+             int32_t* __restrict depth) {
+  const rules::SnowDepth own = fallen;
+  for (int i = 0; i < n; ++i) depth[i] += rules::snowOn(seed, x + i * step, y, own);
+}
+
 void lowerAlong(int32_t* __restrict underside, int n, int first, int step, int step_fraction, int lowest, int highest) {
   for (int i = 0; i < n; ++i)
     underside[i] =
@@ -143,11 +149,11 @@ struct Exchanged {
   int32_t height, soil, room, threshold;
 };
 
-template <bool kBeneath, bool kMixed>
-inline Exchanged exchangedAt(int32_t height, const ExchangeCells& cells, const ExchangeNumbers& numbers, int i) {
-  return {height, height - cells.bedrock[i],
-          kBeneath ? rules::roomBeneath(height, cells.underside[i], numbers.obstacle_threshold) : rules::kHeightLimit,
-          kMixed ? cells.threshold[i] : numbers.threshold};
+template <bool kBeneath>
+inline Exchanged exchanged(int32_t height, int32_t bedrock, int32_t underside, int32_t threshold,
+                           int obstacle_threshold) {
+  return {height, height - bedrock,
+          kBeneath ? rules::roomBeneath(height, underside, obstacle_threshold) : rules::kHeightLimit, threshold};
 }
 
 inline int32_t flowOf(const Exchanged& a, const Exchanged& b) {
@@ -155,15 +161,20 @@ inline int32_t flowOf(const Exchanged& a, const Exchanged& b) {
 }
 
 template <bool kBeneath, bool kMixed>
-bool exchangeRowsOf(const ExchangeCells& cells_a, const ExchangeCells& cells_b, int n, const ExchangeNumbers& all) {
-  const ExchangeNumbers numbers = all;
+bool exchangeRowsOf(const ExchangeCells& cells_a, const ExchangeCells& cells_b, int n, const ExchangeNumbers& numbers) {
   int32_t* __restrict a = cells_a.height;
   int32_t* __restrict b = cells_b.height;
-  const ExchangeCells in_a = cells_a, in_b = cells_b;
+  const int32_t *bedrock_a = cells_a.bedrock, *bedrock_b = cells_b.bedrock;
+  const int32_t *underside_a = cells_a.underside, *underside_b = cells_b.underside;
+  const int32_t *threshold_a = cells_a.threshold, *threshold_b = cells_b.threshold;
+  const int threshold = numbers.threshold, obstacle = numbers.obstacle_threshold;
   int moved = 0;
+#pragma GCC ivdep  // seven pointers are more than GCC would tell apart at run time
   for (int i = 0; i < n; ++i) {
-    const int32_t flow = flowOf(exchangedAt<kBeneath, kMixed>(a[i], in_a, numbers, i),
-                                exchangedAt<kBeneath, kMixed>(b[i], in_b, numbers, i));
+    const int32_t flow = flowOf(exchanged<kBeneath>(a[i], bedrock_a[i], kBeneath ? underside_a[i] : 0,
+                                                    kMixed ? threshold_a[i] : threshold, obstacle),
+                                exchanged<kBeneath>(b[i], bedrock_b[i], kBeneath ? underside_b[i] : 0,
+                                                    kMixed ? threshold_b[i] : threshold, obstacle));
     a[i] -= flow;
     b[i] += flow;
     moved |= flow;
@@ -174,18 +185,20 @@ bool exchangeRowsOf(const ExchangeCells& cells_a, const ExchangeCells& cells_b, 
 // Flows between all neighbours, those of the other parity masked out: twice the arithmetic of the pairs alone, but in
 // consecutive lanes, which is faster than taking pairs apart and putting them together.
 template <bool kBeneath, bool kMixed>
-bool exchangeWithinOf(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& all) {
+bool exchangeWithinOf(const ExchangeCells& cells, int pair_count, const ExchangeNumbers& numbers) {
   constexpr int kMost = rules::kTileSize;
-  const ExchangeNumbers numbers = all;
-  const ExchangeCells in = cells;
   int32_t* __restrict height = cells.height;
+  const int32_t *bedrock = cells.bedrock, *underside = cells.underside, *thresholds = cells.threshold;
+  const int threshold = numbers.threshold, obstacle = numbers.obstacle_threshold;
+  const auto at = [=](int i) {
+    return exchanged<kBeneath>(height[i], bedrock[i], kBeneath ? underside[i] : 0, kMixed ? thresholds[i] : threshold,
+                               obstacle);
+  };
   int32_t flow[kMost + 1];
   int moved = 0;
   flow[0] = 0;
   for (int i = 0; i < 2 * pair_count; ++i) {
-    const int32_t f = flowOf(exchangedAt<kBeneath, kMixed>(height[i], in, numbers, i),
-                             exchangedAt<kBeneath, kMixed>(height[i + 1], in, numbers, i + 1)) &
-                      ((i & 1) - 1);
+    const int32_t f = flowOf(at(i), at(i + 1)) & ((i & 1) - 1);
     flow[i + 1] = f;
     moved |= f;
   }
@@ -355,6 +368,7 @@ const Kernels SPOOR_JOIN(kKernels_, SPOOR_KERNELS_NAME) = {SPOOR_TEXT(SPOOR_KERN
                                                            lowest,
                                                            highest,
                                                            craterRow,
+                                                           snowRow,
                                                            lowerAlong,
                                                            hideAbove,
                                                            overlap,

@@ -78,12 +78,12 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   for (const std::int64_t budget : {crater_budget, event_budget})
     if (budget > kBudgetLimit || budget < -kBudgetLimit)
       return Error{"snapshot: a budget of " + std::to_string(budget) + " is more than its tiles can hold"};
+  if (Status status = validateParameters(base.pack(), state.parameters); !status)
+    return Error{"snapshot: " + status.error()};
   if (Status status = readCraters(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   if (Status status = readSnowfalls(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   const std::size_t count = reader.get<std::uint32_t>();
   if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
-  if (Status status = validateParameters(base.pack(), state.parameters); !status)
-    return Error{"snapshot: " + status.error()};
   if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
     return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) +
                  " bodies"};

@@ -23,8 +23,13 @@ std::vector<Crater> numbered(std::span<const Crater> craters, std::int32_t tick,
 Simulation::Simulation(const BaseTerrain& base, const PackId& id, std::unique_ptr<Backend> backend)
     : Simulation(base, initialState(id, base), std::move(backend)) {}
 
-Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend)
-    : base_(&base), reach_q_(bodyReaches(base.pack())), backend_(std::move(backend)), state_(std::move(state)) {
+Simulation::Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend,
+                       std::size_t tile_limit)
+    : base_(&base),
+      reach_q_(bodyReaches(base.pack())),
+      tile_limit_(tile_limit),
+      backend_(std::move(backend)),
+      state_(std::move(state)) {
   backend_->forget();
 }
 
@@ -59,7 +64,8 @@ Status Simulation::begin(std::span<const Pose> poses, const std::optional<Parame
   }
   Result<TickPlan> plan = [&] {
     StageTimer timer(result.effect.stage_ms, Stage::active);
-    return planTick(pack, reach_q_, state_, poses, parameters.value_or(state_.parameters), result.update.craters);
+    return planTick(pack, reach_q_, state_, poses, parameters.value_or(state_.parameters), result.update.craters,
+                    tile_limit_);
   }();
   if (!plan) {
     takeBack(result);
@@ -133,7 +139,10 @@ Result<TickResult> Simulation::finish() {
   {
     StageTimer timer(result.effect.stage_ms, Stage::delta);
     if (Status status = backend_->collect(state_, result.effect.changes); !status) {
-      if (submitted_) state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+      if (submitted_) {
+        state_.craters.truncate(state_.craters.size() - submitted_->update.craters.size());
+        takeBack(*submitted_);
+      }
       return failure_.emplace(Error{status.error()});
     }
     result.update.tiles = encodeTiles(result.effect.changes);

@@ -25,7 +25,9 @@ class Simulation {
   /// Starts at the pack's initial state. The base, and its pack, must outlive this.
   Simulation(const BaseTerrain& base, const PackId& id, std::unique_ptr<Backend> backend);
   /// Goes on from a state of the same pack, as from a snapshot.
-  Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend);
+  /// @param tile_limit  of planTick; the same for all who run a session
+  Simulation(const BaseTerrain& base, WorldState state, std::unique_ptr<Backend> backend,
+             std::size_t tile_limit = kTickTilesLimit);
 
   /// Runs one tick that takes the bodies to `poses`: begin() and finish().
   Result<TickResult> step(std::span<const Pose> poses, const std::optional<Parameters>& parameters = {},
@@ -63,6 +65,7 @@ class Simulation {
 
   const BaseTerrain* base_;
   std::vector<std::int32_t> reach_q_;  // bodyReaches
+  std::size_t tile_limit_;
   std::unique_ptr<Backend> backend_;
   WorldState state_;
   std::optional<TickResult> submitted_;  // with the backend; without its effect, and the state knows nothing of it but

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "shared/base/assert.h"
+#include "shared/base/kernels.h"
 #include "shared/world/pack.h"
 
 namespace spoor {
@@ -107,17 +108,19 @@ void fillSnow(const ScenePack& pack, std::span<const Snowfall> snowfalls, std::i
     for (std::int32_t row = 0; row < rows; ++row) {
       const std::int64_t cell_y = y + std::int64_t(row) * stride;
       if (cell_y < area.y0 || cell_y >= area.y1) continue;
-      TileCoordinate at{-1, std::int32_t(cell_y / rules::kTileSize)};
-      rules::SnowDepth fallen{};
-      for (std::int32_t column = 0; column < columns; ++column) {
-        const std::int64_t cell_x = x + std::int64_t(column) * stride;
-        if (cell_x < area.x0 || cell_x >= area.x1) continue;
-        if (const auto tile_x = std::int32_t(cell_x / rules::kTileSize); tile_x != at.x) {
-          at.x = tile_x;
-          fallen = snowDepth(snowfall, at, tick);
-        }
-        depth[std::size_t(row) * std::size_t(columns) + std::size_t(column)] +=
-            rules::snowOn(snowfall.seed, std::int32_t(cell_x), std::int32_t(cell_y), fallen);
+      // Columns within the area, tile by tile: floor and ceiling of (area.x - x) / stride.
+      const std::int64_t first = area.x0 <= x ? 0 : (std::int64_t(area.x0) - x + stride - 1) / stride;
+      const std::int64_t end =
+          std::min<std::int64_t>(columns, area.x1 <= x ? 0 : (std::int64_t(area.x1) - x + stride - 1) / stride);
+      for (std::int64_t column = first; column < end;) {
+        const auto cell_x = std::int32_t(x + column * stride);
+        const TileCoordinate at{cell_x / rules::kTileSize, std::int32_t(cell_y / rules::kTileSize)};
+        const std::int64_t in_tile = ((at.x + 1) * std::int64_t(rules::kTileSize) - cell_x + stride - 1) / stride;
+        const std::int64_t count = std::min(in_tile, end - column);
+        kernels().snowRow(snowfall.seed, cell_x, stride, std::int32_t(cell_y), int(count),
+                          snowDepth(snowfall, at, tick),
+                          depth.data() + std::size_t(row) * std::size_t(columns) + std::size_t(column));
+        column += count;
       }
     }
   }

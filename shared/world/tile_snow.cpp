@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shaders/rules/exchange.h"
+#include "shared/base/kernels.h"
 
 namespace spoor {
 namespace {
@@ -12,7 +13,12 @@ constexpr int kSide = kSize + 2;
 
 /// A tile's cells and one more on every side. Cells that do not matter have no soil and take none.
 struct Surroundings {
-  std::array<std::int32_t, kSide * kSide> height{}, soil{}, room{}, side{}, diagonal{};
+  std::array<std::int32_t, kSide * kSide> height{}, bedrock{}, underside, side{}, diagonal{};
+
+  Surroundings() { underside.fill(-rules::kHeightLimit); }
+  ExchangeCells cellsAt(std::size_t i, bool is_diagonal, std::int32_t* heights) const {
+    return {heights, &bedrock[i], &underside[i], is_diagonal ? &diagonal[i] : &side[i]};
+  }
 };
 
 /// Height differences that rest, by the material of the higher cell.
@@ -48,17 +54,20 @@ void addCells(const Tile& tile, int dx, int dy, const ScenePack& pack, const std
       const auto to = std::size_t((y + 1) * kSide + x + 1);
       const Thresholds& own = thresholds[tile.material() == nullptr ? 0 : std::size_t((*tile.material())[from])];
       around.height[to] = tile.height()[from];
-      around.soil[to] = tile.height()[from] - (*tile.bedrock)[from];
-      around.room[to] = rules::kHeightLimit;
+      around.bedrock[to] = (*tile.bedrock)[from];
+      around.underside[to] = rules::kNoUnderside;
       around.side[to] = rules::exchangeThreshold(own.side);
       around.diagonal[to] = rules::exchangeThreshold(own.diagonal);
     }
 }
 
-bool flows(const Surroundings& around, std::size_t a, std::size_t b, bool is_diagonal) {
-  const auto& threshold = is_diagonal ? around.diagonal : around.side;
-  return rules::pairFlow(around.height[a], around.height[b], threshold[a], threshold[b], around.soil[a], around.soil[b],
-                         around.room[a], around.room[b]) != 0;
+/// Does soil flow over any of the `count` edges from cells in a row, the first at `a`, to those from `b` on?
+bool flows(const Surroundings& around, std::size_t a, std::size_t b, int count, bool is_diagonal) {
+  std::int32_t height_a[kSide], height_b[kSide];
+  std::copy_n(&around.height[a], count, height_a);
+  std::copy_n(&around.height[b], count, height_b);
+  return kernels().exchangeRows(around.cellsAt(a, is_diagonal, height_a), around.cellsAt(b, is_diagonal, height_b),
+                                count, {1, 0});
 }
 
 int tileOf(int cell) { return cell < 0 ? -1 : cell < kSize ? 0 : 1; }
@@ -69,16 +78,19 @@ WakeMask unstable(const Surroundings& around) {
   constexpr int kSteps[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
   WakeMask mask = 0;
   for (int y = -1; y < kSize; ++y)
-    for (const auto& [dx, dy] : kSteps)
-      for (int x = -1; x <= kSize; ++x) {
-        const int other_x = x + dx, other_y = y + dy;
-        if (other_x < -1 || other_x > kSize) continue;
-        const bool inner = tileOf(x) == 0 && tileOf(y) == 0, other_inner = tileOf(other_x) == 0 && tileOf(other_y) == 0;
-        if (!inner && !other_inner) continue;
-        const auto a = std::size_t((y + 1) * kSide + x + 1);
-        if (flows(around, a, std::size_t(int(a) + dy * kSide + dx), dx != 0 && dy != 0))
-          mask = WakeMask(mask | kWakeSelf | bitOf(tileOf(x), tileOf(y)) | bitOf(tileOf(other_x), tileOf(other_y)));
+    for (const auto& [dx, dy] : kSteps) {
+      const bool is_diagonal = dx != 0 && dy != 0;
+      const int first = dx < 0 ? 0 : -1, count = kSide - std::abs(dx);
+      const auto a = std::size_t((y + 1) * kSide + first + 1);
+      const auto b = std::size_t(int(a) + dy * kSide + dx);
+      if (!flows(around, a, b, count, is_diagonal)) continue;
+      for (int i = 0; i < count; ++i) {
+        const WakeMask ends =
+            WakeMask(bitOf(tileOf(first + i), tileOf(y)) | bitOf(tileOf(first + i + dx), tileOf(y + dy)));
+        if ((ends & kWakeSelf) != 0 && flows(around, a + std::size_t(i), b + std::size_t(i), 1, is_diagonal))
+          mask = WakeMask(mask | ends);
       }
+    }
   return mask;
 }
 

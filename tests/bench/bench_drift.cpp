@@ -9,7 +9,7 @@
 #include "shared/base/json.h"
 #include "shared/base/statistics.h"
 #include "tests/bench/bench_measures.h"
-#include "tests/gilardi.h"
+#include "tests/bench/gilardi.h"
 
 namespace spoor {
 namespace {

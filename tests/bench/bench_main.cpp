@@ -15,11 +15,11 @@ struct Measurement {
   void (*measure)(const Settings&, Report&);
   bool on_gl_only;
 };
-constexpr Measurement kMeasurements[] = {{"tick", measureTicks, false},      {"relax", measureRelax, false},
-                                         {"areas", measureAreas, false},     {"world", measureWorlds, false},
-                                         {"thesis", measureThesis, false},   {"errors", measureErrors, false},
-                                         {"craters", measureCraters, false}, {"cones", measureCones, false},
-                                         {"drift", measureDrift, false},     {"bandwidth", measureBandwidth, true}};
+constexpr Measurement kMeasurements[] = {
+    {"tick", measureTicks, false},      {"relax", measureRelax, false},       {"areas", measureAreas, false},
+    {"world", measureWorlds, false},    {"thesis", measureThesis, false},     {"errors", measureErrors, false},
+    {"craters", measureCraters, false}, {"cones", measureCones, false},       {"drift", measureDrift, false},
+    {"snow", measureSnow, false},       {"bandwidth", measureBandwidth, true}};
 
 /// The command line, as it is written.
 struct Arguments {
@@ -33,10 +33,11 @@ Arguments parse(int argc, char** argv) {
   Arguments arguments;
   Options options("spoor-bench", "times of the pipeline, checked by hash");
   options.addPlain(
-      "tick|relax|areas|world|thesis|errors|craters|cones|drift|bandwidth",
+      "tick|relax|areas|world|thesis|errors|craters|cones|drift|snow|bandwidth",
       "a whole tick by stages; sweeps by schedules; the same cells in 1 to 8 areas; a car in a small and a "
       "large world; the tables of Persson's thesis; errors of the ways to choose from beside their speed; craters as "
-      "records; piles of every material; the drift rule beside its paper's; how fast the device copies [tick]",
+      "records; piles of every material; the drift rule beside its paper's; snowfall; how fast the device copies "
+      "[tick]",
       &arguments.what, 1);
   options.add("scene", "NAME|PACK",
               "a scene of the benchmark or a pack, for tick (else car491, slab491) and relax "
@@ -63,7 +64,7 @@ Arguments parse(int argc, char** argv) {
 Status check(const Arguments& arguments, const Measurement* measurement) {
   if (measurement == nullptr)
     return Error{"'" + arguments.what.front() +
-                 "' is none of tick, relax, areas, world, thesis, errors, craters, cones, drift, bandwidth"};
+                 "' is none of tick, relax, areas, world, thesis, errors, craters, cones, drift, snow, bandwidth"};
   const std::set<std::string> schedules{"auto", "plain", "fused"}, backends{"auto", "gl", "native"};
   if (schedules.count(arguments.schedule) == 0)
     return Error{"--schedule: '" + arguments.schedule + "' is none of auto, plain, fused"};

@@ -56,6 +56,8 @@ void measureCraters(const Settings& settings, Report& report);
 void measureCones(const Settings& settings, Report& report);
 /// Rule `drift` beside the published scheme of Gilardi et al.: stability, error, order of convergence, and time.
 void measureDrift(const Settings& settings, Report& report);
+/// What snowfall costs a tick, on ground that nobody reached, that rests, and that slides.
+void measureSnow(const Settings& settings, Report& report);
 /// The device's copy bandwidth.
 void measureBandwidth(const Settings& settings, Report& report);
 

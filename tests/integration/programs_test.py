@@ -233,7 +233,42 @@ def craters_are_the_same_for_all(scratch):
     expect(code == 0 and f"craters {report['crater_count']}, ledger's crater budget {report['ledger']['craters']}" in out, f"{out} {err}")
     expect(re.search(r"^tick 40: crater \d+ at \(7, 20.5\) m", out, re.M) and "craters more" in out, out)
     code, out, err = run("spoor-replay", "export", session)
-    expect(code == 0 and sum(int(line.split(",")[-1]) for line in out.splitlines()[1:]) == report["crater_count"], f"{out} {err}")
+    expect(code == 0 and sum(int(line.split(",")[-2]) for line in out.splitlines()[1:]) == report["crater_count"], f"{out} {err}")
+
+
+def materials_and_snow_are_the_same_for_all(scratch):
+    """Several materials, a change of one of them, snow from the command line and the console; a client from the start, one late."""
+    session, figures = scratch / "materials.session", scratch / "materials.json"
+    server = Server(f"--scene={SOURCE}/scenes/materials.toml", "--ticks=240", "--rate=60", "--wait-clients=1", "--console",
+                    "--set=10:sand.angleOfRepose=30", "--snowfall=20:0,0,9,12.8,72000,2,7", f"--session={session}",
+                    f"--json={figures}", stdin=subprocess.PIPE)
+    steady = server.join("steady", f"--out={scratch}/steady")
+    server.line_with(r"tick 20: snowfall on \(0, 0\) to \(9, 12.8\) m, 72000 mm per hour, ticks 20 .. 139, seed 7")
+    server.process.stdin.write("snow 1,2\nclay.roughness=1\nsnow 5,0,15,9,36000,1,3\nmud.diffusion=0.5\n")
+    server.process.stdin.flush()
+    server.line_with(r"console: snow: '1,2' is not X0,Y0,X1,Y1,MM_PER_HOUR,SECONDS")
+    server.line_with(r"tick \d+: clay.roughness: no material is named 'clay'; there are: mud, sand, pebbles")
+    tick = int(server.line_with(r"tick (\d+): mud.diffusion 0.25 -> 0.5").group(1))
+    late = server.join("late", f"--out={scratch}/late")
+    hashes = []
+    for client in (steady, late):
+        code, out, err = finish(client)
+        expect(code == 0, f"a client failed with {code}: {err}")
+        hashes.append(client_hash(out))
+    code, table, err = finish(server.process)
+    expect(code == 0, f"the server failed with {code}: {table} {err}")
+    report = json.loads(figures.read_text())
+    expect(set(hashes) == {report["server_hash"]}, f"clients {hashes}, server {report['server_hash']}")
+    expect(report["ledger"]["error"] == 0 and report["ledger"]["events"] > 0, str(report))
+    expect(report["snowfall_count"] == 2 and report["snowfalls_left_out"] == 0, str(report))
+    code, out, err = run("spoor-replay", "verify", session, "--backend=native")
+    expect(code == 0 and report["server_hash"] in out, f"{out} {err}")
+    code, out, err = run("spoor-replay", "info", session)
+    expect(code == 0 and "materials 3, by an image\n  mud, colour #5b4331" in out and "\n  sand.diffusion 1\n" in out, f"{out} {err}")
+    expect("tick 10: sand.slopeThreshold 1 (" in out and f"tick {tick}: mud.diffusion 0.25 -> 0.5" in out, f"{out} {err}")
+    expect("tick 20: snowfall on (0, 0) to (9, 12.8) m" in out and f"snowfalls 2, ledger's events {report['ledger']['events']}" in out, f"{out} {err}")
+    code, out, err = run("spoor-replay", "export", session)
+    expect(code == 0 and sum(int(line.split(",")[-1]) for line in out.splitlines()[1:]) == 2, f"{out} {err}")
 
 
 def replay_names_the_damaged_record(scratch):
@@ -272,7 +307,8 @@ def a_client_says_that_the_server_went_away(scratch):
 def bad_command_lines_exit_2(scratch):
     for program, option in (("spoor-server", "--nonsense"), ("spoor-server", "--ticks=many"), ("spoor-client", "--nonsense"),
                             ("spoor-server", "--set=5:rubbish=1"), ("spoor-server", "--set=roughness=1"), ("spoor-server", "--set=5:terrainSize=9"),
-                            ("spoor-server", "--crater=1,2,3,4,5"), ("spoor-server", "--crater=5:1,2"), ("spoor-client", "--crater=5:1,2"),
+                            ("spoor-server", "--crater=1,2,3,4,5"), ("spoor-server", "--crater=5:1,2"), ("spoor-server", "--snowfall=1,2,3,4,5,6"),
+                            ("spoor-server", "--snowfall=5:1,2"), ("spoor-server", "--set=5:a.spreadCells=1"), ("spoor-client", "--crater=5:1,2"),
                             ("spoor-replay", "dance"), ("spoor-bench", "--ticks=-1"), ("spoor-import", "--scene=x")):
         code, _, err = run(program, option)
         expect(code == 2 and len(err.strip().splitlines()) == 1, f"{program} {option}: {code} {err}")
@@ -297,6 +333,7 @@ CASES = [
     a_session_whose_parameters_change_verifies_on_either_backend,
     who_joins_after_a_change_holds_it,
     craters_are_the_same_for_all,
+    materials_and_snow_are_the_same_for_all,
     replay_names_the_damaged_record,
     a_client_says_in_one_line_why_it_cannot_join,
     a_client_says_that_the_server_went_away,

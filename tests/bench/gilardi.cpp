@@ -1,4 +1,4 @@
-#include "tests/gilardi.h"
+#include "tests/bench/gilardi.h"
 
 #include <algorithm>
 #include <cmath>
