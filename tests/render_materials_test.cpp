@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "client/drift_scenes.h"
+#include "client/figure_scene.h"
+#include "client/recording.h"
 #include "client/terrain_levels.h"
 #include "tests/render_rig.h"
 
@@ -162,7 +165,11 @@ TEST_F(Render, PebblesStandOutOfTheGroundByTheirHeightAndNotAtNone) {
 }
 
 TEST_F(Render, PebblesLeaveNoCracks) {
-  ViewedWorld world(pebblePack(400));
+  // As large as four cells, so that triangles at the border of what is cut finely are larger than a cell.
+  ScenePack pack = noisePack();
+  pack.bodies.clear();
+  pack.materials = {{"pebbles", {150, 145, 140}, MaterialTexture::pebbles, 2000, 600}};
+  ViewedWorld world(pack);
   addLiveTile(world.state, world.base, {9, 8}, 2000);
   addLiveTile(world.state, world.base, {10, 8}, -1500);
   Renderer renderer(world.pack, smallSettings());
@@ -170,7 +177,9 @@ TEST_F(Render, PebblesLeaveNoCracks) {
     // Far from the border of what is cut finely, and close to it.
     const glm::dvec2 place_m(9.2 * 3.2 + 0.61 * i, 8.3 * 3.2 + 0.37 * i);
     Camera camera = fromAbove(world, place_m, 0.6 + 0.9 * i);
-    if (i % 2 == 1) camera = cameraLookingAt({place_m, 1.2}, {place_m + glm::dvec2(2.0, 1.0), -2.5});
+    const double ground_m = groundHeight(world.view(), place_m);
+    if (i % 2 == 1)
+      camera = cameraLookingAt({place_m, ground_m + 1.5}, {place_m + glm::dvec2(2.0, 1.0), ground_m - 2.0});
     camera.focus_m = place_m;
     renderer.draw(world.view(), camera);
     EXPECT_EQ(pixelsShowingSky(renderer.readPicture()), 0u) << "camera " << i;
@@ -288,6 +297,35 @@ TEST_F(Render, BodiesAreDrawnAsLargeAsTheirScale) {
   const double pixel = 192 / 2.4;
   EXPECT_NEAR(extent(kFullScale), 1.6 * pixel, 2.0);
   EXPECT_NEAR(extent(kFullScale / 4), 0.4 * pixel, 2.0);
+}
+
+TEST(Recording, ReplaysTheSnowThatEveryMomentHad) {
+  SnowWorld world(0);
+  Recording recording(3);
+  for (const int tick : {5, 10, 40}) {
+    world.state.tick = tick;
+    if (tick == 10) world.state.snowfalls.push_back(world.state.snowfalls[0]);
+    recording.add(world.state, {});
+  }
+  recording.finish(world.state);
+  std::vector<std::pair<std::int32_t, std::size_t>> seen;
+  recording.replay(world.base, [&](int, const WorldState& state, std::span<const TileCoordinate>) {
+    seen.emplace_back(state.tick, state.snowfalls.size());
+    return true;
+  });
+  EXPECT_EQ(seen, (std::vector<std::pair<std::int32_t, std::size_t>>{{5, 1}, {10, 2}, {40, 2}}));
+}
+
+TEST(DriftScenes, AreWorldsThatRunAndKeepTheirSoil) {
+  using enum DriftMaterial;
+  for (const ScenePack& pack : {driftTracksPack({mud}), driftTracksPack({mud, pebbles, sand}), snowedTracksPack(),
+                                growingBallPack(), driftMeasurePack(512)}) {
+    ASSERT_TRUE(validatePack(pack)) << pack.name;
+    FigureScene scene(pack, makeNativeBackend());
+    ASSERT_TRUE(scene.runTo(4)) << pack.name;
+    EXPECT_EQ(scene.state().ledger.error(), 0) << pack.name;
+    EXPECT_GT(scene.state().tiles.size(), 0u) << pack.name;
+  }
 }
 
 }  // namespace
