@@ -11,6 +11,8 @@
 #include <string>
 
 #include "client/crater_measure.h"
+#include "client/drift_figures.h"
+#include "client/drift_measure.h"
 #include "client/figure_scene.h"
 #include "client/picture_options.h"
 #include "client/views.h"
@@ -18,6 +20,7 @@
 #include "shaders/host/make_backend.h"
 #include "shared/base/options.h"
 #include "shared/base/statistics.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 
@@ -126,7 +129,8 @@ Status drawCraters(const Arguments& arguments, RenderSettings settings) {
   for (const CraterFigure& figure : kCraterFigures) {
     renderer.draw(scene.view(), craterView(scene.view(), std::uint32_t(figure.id), figure.look,
                                            settings.sun_azimuth_deg, double(settings.width_px) / settings.height_px));
-    const std::string name = fmt::format("crater_{}_{}", figure.name, arguments.picture.ground);
+    const bool own = settings.ground == Ground::scene;  // which is snow
+    const std::string name = fmt::format("crater_{}_{}", figure.name, own ? "snow" : arguments.picture.ground);
     if (const Status written = writePicture(renderer, arguments, name); !written) return written;
   }
   return {};
@@ -167,6 +171,8 @@ Status timeFrames(FigureScene& scene, Renderer& renderer, const Camera& camera, 
   for (int frame = 1; frame <= frame_count; ++frame) {
     if (const Status run = scene.runTo(tick + frame); !run) return run;
     renderer.tilesChanged(scene.activeTiles());
+    for (const Tile* tile : tilesInSnow(scene.state(), tick + frame, SnowTiles::asleep))
+      renderer.tilesChanged({&tile->at, 1});
     FrameTimes times;
     renderer.draw(scene.view(), camera, &times);
     heights_ms.push_back(times.heights_ms);
@@ -218,9 +224,14 @@ Status drawAll(const Arguments& arguments, const RenderSettings& settings) {
   const auto context = openHeadlessContext();
   if (!context) return Error{context.error()};
   fmt::print("renderer {} ({})\n", (*context)->renderer(), (*context)->path());
-  if (!arguments.measure.empty()) return measureCraters(settings, arguments.json);
+  if (arguments.measure == "craters") return measureCraters(settings, arguments.json);
+  if (arguments.measure == "drift") return measureDrift(settings, arguments.backend, arguments.json);
   if (!arguments.pack.empty()) return drawPack(arguments, settings);
   if (arguments.only == "craters") return drawCraters(arguments, settings);
+  if (arguments.only == "drift")
+    return drawDrift(
+        settings, [&] { return backendFor(arguments); },
+        [&](const Renderer& renderer, const std::string& name) { return writePicture(renderer, arguments, name); });
   for (const DisplacementFigure& figure : kDisplacementFigures)
     if (arguments.only.empty() || arguments.only == figure.number)
       if (const Status drawn = drawDisplacement(arguments, settings, figure); !drawn) return drawn;
@@ -238,7 +249,9 @@ int run(int argc, char** argv) {
       "spoor-figures",
       "Simulates and draws: without --pack the thesis's figures 5.1 to 5.3, with it one picture of a pack.");
   options.add("out", "DIR", "where pictures go", &arguments.folder);
-  options.add("only", "NUMBER", "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind", &arguments.only);
+  options.add("only", "NUMBER",
+              "one figure: 5.1, 5.2 or 5.3; craters: a crater of each kind; drift: tracks in materials",
+              &arguments.only);
   options.add("pack", "FILE", "the scene pack to draw", &arguments.pack);
   options.add("ticks", "COUNT", "after how many ticks; -1: the pack's own", &arguments.tick, -1, 1 << 30);
   options.add(
@@ -246,8 +259,11 @@ int run(int argc, char** argv) {
       "trails, follow, above, overview, columns, or of a crater: crater, crater-ground, crater-inside, crater-above",
       &arguments.look);
   options.add("crater", "ID", "which crater to look at", &arguments.crater, 0, kCratersLimit - 1);
-  options.add("measure", "WHAT", "craters: what a picture takes with and without them, by the cells of their hash",
-              &arguments.measure);
+  options.add(
+      "measure", "WHAT",
+      "craters: what a picture takes with and without them, by the cells of their hash; drift: what a frame takes "
+      "with a sweep of it, by grid and tessellation",
+      &arguments.measure);
   options.add("json", "FILE", "with --measure: where the numbers go", &arguments.json);
   options.add("name", "NAME", "of the picture, without .png; default: the pack's file and the look", &arguments.name);
   options.add("range", "MM", "columns: heights of the first and last colour, below and above 0; 0: what the area holds",
@@ -272,12 +288,13 @@ int run(int argc, char** argv) {
         fmt::format("--look \"{}\": want trails, follow, above, overview, columns, crater, crater-ground, "
                     "crater-inside or crater-above",
                     arguments.look));
-  if (!arguments.measure.empty() && arguments.measure != "craters")
-    return refuse(fmt::format("--measure \"{}\": want craters", arguments.measure));
+  if (!arguments.measure.empty() && arguments.measure != "craters" && arguments.measure != "drift")
+    return refuse(fmt::format("--measure \"{}\": want craters or drift", arguments.measure));
   if (!arguments.json.empty() && arguments.measure.empty()) return refuse("--json: goes with --measure");
   const auto known = [&](const DisplacementFigure& figure) { return arguments.only == figure.number; };
-  if (!arguments.only.empty() && arguments.only != "craters" && std::ranges::none_of(kDisplacementFigures, known))
-    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3, or craters", arguments.only));
+  const bool other = arguments.only == "craters" || arguments.only == "drift";
+  if (!arguments.only.empty() && !other && std::ranges::none_of(kDisplacementFigures, known))
+    return refuse(fmt::format("--only \"{}\": want 5.1, 5.2 or 5.3, or craters or drift", arguments.only));
   if (const Status done = drawAll(arguments, *settings); !done) {
     fmt::print(stderr, "spoor-figures: {}\n", done.error());
     return 1;

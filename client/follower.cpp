@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "shared/base/assert.h"
+#include "shared/world/tile_snow.h"
 
 namespace spoor {
 namespace {
@@ -174,6 +175,7 @@ void Follower::apply(const TickUpdate& update) {
   if (!status && state_->tick != update.tick) return heal(SnapshotCause::tile_mismatch, status.error());
   const auto changes = decodeTiles(update.tiles, *pack_);
   for (const TileChange& change : *changes) changed_.insert(change.at);
+  for (const Tile* tile : tilesInSnow(*state_, update.tick, SnowTiles::all)) changed_.insert(tile->at);
   confirm();
   if (!status) heal(SnapshotCause::hash_mismatch, status.error());
 }

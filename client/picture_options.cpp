@@ -20,11 +20,8 @@ struct NamedGround {
   std::string_view name;
   Ground ground;
 };
-constexpr NamedGround kGrounds[] = {{"snow", Ground::snow},
-                                    {"sand", Ground::sand},
-                                    {"mud", Ground::mud},
-                                    {"dirt", Ground::dirt},
-                                    {"grass", Ground::grass}};
+constexpr NamedGround kGrounds[] = {{"scene", Ground::scene}, {"snow", Ground::snow}, {"sand", Ground::sand},
+                                    {"mud", Ground::mud},     {"dirt", Ground::dirt}, {"grass", Ground::grass}};
 
 std::optional<int> sideOf(std::string_view text) {
   int value = 0;
@@ -38,7 +35,8 @@ std::optional<int> sideOf(std::string_view text) {
 
 void addPictureOptions(Options& options, PictureArguments& arguments) {
   options.add("size", "WIDTHxHEIGHT", "of window or pictures, pixels", &arguments.size);
-  options.add("ground", "snow|sand|mud|dirt|grass", "what the ground looks like", &arguments.ground);
+  options.add("ground", "scene|snow|sand|mud|dirt|grass",
+              "what all of the ground looks like; scene: as its materials say", &arguments.ground);
   options.add("blur-normals", "PASSES", "of a 3 x 3 Gaussian over the ground's normals; -1: as the scene says",
               &arguments.blur_normals, -1, render::kBlurPassesLimit);
 }
@@ -55,7 +53,7 @@ Result<RenderSettings> pictureSettings(const PictureArguments& arguments) {
   settings.height_px = *height;
   const auto ground = std::ranges::find(kGrounds, std::string_view(arguments.ground), &NamedGround::name);
   if (ground == std::end(kGrounds))
-    return Error{fmt::format("--ground \"{}\": want snow, sand, mud, dirt or grass", arguments.ground)};
+    return Error{fmt::format("--ground \"{}\": want scene, snow, sand, mud, dirt or grass", arguments.ground)};
   settings.ground = ground->ground;
   settings.blur_passes = int(arguments.blur_normals);
   return settings;

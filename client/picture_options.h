@@ -11,7 +11,7 @@ namespace spoor {
 /// What the command lines of all programs that draw have in common.
 struct PictureArguments {
   std::string size = "1280x720";
-  std::string ground = "snow";
+  std::string ground = "scene";
   std::int64_t blur_normals = -1;
 };
 

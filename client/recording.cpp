@@ -32,7 +32,8 @@ void Recording::save(const WorldState& state) {
   const std::span<const Crater> craters = state.craters.records();
   if (craters.size() > craters_.size())
     craters_.insert(craters_.end(), craters.begin() + std::ptrdiff_t(craters_.size()), craters.end());
-  Moment moment{state.tick, state.poses, state.previous_poses, craters.size(), {}};
+  snowfalls_ = state.snowfalls;
+  Moment moment{state.tick, state.poses, state.previous_poses, craters.size(), snowfalls_.size(), {}};
   for (const TileCoordinate at : changed_) {
     const Tile* tile = state.tiles.find(at);
     if (tile == nullptr) continue;
@@ -82,9 +83,10 @@ void Recording::replay(const BaseTerrain& base,
       const std::size_t before = state.craters.size();
       if (moment.crater_count > before)
         state.craters.add(std::span(craters_).subspan(before, moment.crater_count - before));
+      state.snowfalls.assign(snowfalls_.begin(), snowfalls_.begin() + std::ptrdiff_t(moment.snowfall_count));
       for (const auto& [at, saved] : moment.tiles) {
         Tile* tile = state.tiles.find(at);
-        if (tile == nullptr) tile = &state.tiles.insert(makeTile(at, {&base, &state.craters}, moment.tick));
+        if (tile == nullptr) tile = &state.tiles.insert(makeTile(at, dormantGround(state, base), moment.tick));
         tile->height() = *saved.height;
         tile->ground = saved.ground;
         tile->initial = saved.initial;

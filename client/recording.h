@@ -40,6 +40,7 @@ class Recording {
     std::int32_t tick = 0;
     std::vector<Pose> poses, previous_poses;
     std::size_t crater_count = 0;                             // of craters_
+    std::size_t snowfall_count = 0;                           // of snowfalls_
     std::vector<std::pair<TileCoordinate, SavedTile>> tiles;  // in order; changed since the moment before
   };
   void save(const WorldState& state);
@@ -49,6 +50,7 @@ class Recording {
   std::int32_t spacing_ticks_ = 1;
   std::vector<Moment> moments_;
   std::vector<Crater> craters_;       // of the newest state: those of every moment come first
+  std::vector<Snowfall> snowfalls_;   // the same
   std::set<TileCoordinate> changed_;  // since the last moment
   std::size_t saved_tiles_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "shaders/host/gl_context.h"
@@ -31,32 +32,23 @@ glm::dvec3 sunOf(const RenderSettings& settings) {
   return {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)};
 }
 
-int groundCode(Ground ground) {
-  switch (ground) {
-    case Ground::snow:
-      return render::kGroundSnow;
-    case Ground::sand:
-      return render::kGroundSand;
-    case Ground::mud:
-      return render::kGroundMud;
-    case Ground::dirt:
-      return render::kGroundDirt;
-    case Ground::grass:
-      return render::kGroundGrass;
-  }
-  SPOOR_ASSERT(false);
-  return render::kGroundSnow;
-}
-
 int shadeCode(Shade shade) {
   if (shade == Shade::columns) return render::kShadeColumns;
   return shade == Shade::normals ? render::kShadeNormals : render::kShadeLit;
 }
 
-TerrainSettings terrainSettings(const ScenePack& pack, const RenderSettings& settings) {
+TerrainSettings terrainSettings(const ScenePack& pack, const RenderSettings& settings,
+                                const std::vector<render::MaterialLook>& looks) {
   const int patches_per_row = settings.patches_per_row < 0 ? pack.patches_per_row : settings.patches_per_row;
-  return {settings.fine_pages, settings.coarse_pages, finePatchSamples(pack.width_cells, patches_per_row),
-          settings.blur_passes < 0 ? pack.normal_blur_passes : settings.blur_passes};
+  const StoneSize stones = settings.detail > 0.0 ? stoneSize(looks) : StoneSize();
+  return {settings.fine_pages,
+          settings.coarse_pages,
+          finePatchSamples(pack.width_cells, patches_per_row),
+          settings.blur_passes < 0 ? pack.normal_blur_passes : settings.blur_passes,
+          looks.size() > 1,
+          stones.side_m,
+          stones.height_m * settings.detail,
+          settings.triangle_px / 2.0};
 }
 
 }  // namespace
@@ -66,11 +58,16 @@ Renderer::Renderer(const ScenePack& pack, const RenderSettings& settings)
       settings_(settings),
       cell_m_(double(pack.cell_q) / rules::kUnitsPerMetre),
       sun_(sunOf(settings)),
-      terrain_(terrainSettings(pack, settings), cell_m_, sun_),
+      looks_(looksOf(pack, settings.ground)),
+      terrain_(terrainSettings(pack, settings, looks_), cell_m_, sun_),
       bodies_(pack),
       columns_(settings.columns) {
   frame_block_ = makeBuffer();
   glNamedBufferStorage(frame_block_.name(), sizeof(render::Frame), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  looks_block_ = makeBuffer();
+  std::array<render::MaterialLook, render::kLooksLimit> looks{};
+  std::ranges::copy(looks_, looks.begin());
+  glNamedBufferStorage(looks_block_.name(), sizeof looks, looks.data(), 0);
   patch_buffer_ = makeBuffer();
   patch_layout_ = makeVertexArray();
   no_layout_ = makeVertexArray();
@@ -78,10 +75,23 @@ Renderer::Renderer(const ScenePack& pack, const RenderSettings& settings)
   glVertexArrayAttribIFormat(patch_layout_.name(), 0, 4, GL_INT, 0);
   glVertexArrayAttribBinding(patch_layout_.name(), 0, 0);
   glVertexArrayVertexBuffer(patch_layout_.name(), 0, patch_buffer_.name(), 0, sizeof(Patch));
-  terrain_program_ =
-      makeProgram({"render/terrain.vert", "render/terrain.tesc", "render/terrain.tese", "render/terrain.frag"});
-  picture_program_ = makeProgram({"render/screen.vert", "render/picture.frag"});
+  programs();  // so that a driver that refuses them says so here
   makeTargets();
+}
+
+const Renderer::Programs& Renderer::programs() {
+  const bool cover = terrain_.hasCover();
+  Programs& programs = programs_[cover ? 1 : 0];
+  if (programs.terrain.name() != 0) return programs;
+  unsigned textures = 0;
+  for (const render::MaterialLook& look : looks_) textures |= 1u << look.texture_kind.x;
+  const ShaderDefines defines{{"SPOOR_COVER", cover ? "1" : "0"},
+                              {"SPOOR_TEXTURES", std::to_string(textures)},
+                              {"SPOOR_STONES", terrain_.settings().stone_side_m > 0.0 ? "1" : "0"}};
+  programs.terrain = makeProgram(
+      {"render/terrain.vert", "render/terrain.tesc", "render/terrain.tese", "render/terrain.frag"}, defines);
+  programs.picture = makeProgram({"render/screen.vert", "render/picture.frag"}, defines);
+  return programs;
 }
 
 void Renderer::makeTargets() {
@@ -151,11 +161,15 @@ void Renderer::fillFrame(std::span<const Pose> poses, const Camera& camera, cons
                 highlight_.empty() ? 0.0f : 1.0f};
   block.origin = {frame.origin_cell, frame.origin_height_q, terrain_.settings().fine_patch_samples};
   block.place = {pack_->cell_q, 0, 0, 0};
-  block.world = {pack_->width_cells, pack_->height_cells, groundCode(settings_.ground), shadeCode(settings_.shade)};
+  block.stones = {float(terrain_.stoneReach(frame)), float(terrain_.settings().stone_triangle_px),
+                  float(settings_.tessellation), 0.0f};
+  block.world = {pack_->width_cells, pack_->height_cells, terrain_.settings().materials ? int(looks_.size()) : 0,
+                 shadeCode(settings_.shade)};
   const auto windows = terrain_.windows();
   std::copy(windows.begin(), windows.end(), block.levels);
   glNamedBufferSubData(frame_block_.name(), 0, sizeof block, &block);
   glBindBufferBase(GL_UNIFORM_BUFFER, render::kFrameBinding, frame_block_.name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, render::kLooksBinding, looks_block_.name());
 }
 
 void Renderer::draw(const TerrainView& view, const Camera& camera, FrameTimes* times) {
@@ -211,13 +225,14 @@ void Renderer::drawTerrain(const CameraFrame& frame) {
   terrain_.collectPatches(frame, patches_);
   terrain_.stats.patches_drawn = std::int64_t(patches_.size());
   glNamedBufferData(patch_buffer_.name(), GLsizeiptr(patches_.size() * sizeof(Patch)), patches_.data(), GL_STREAM_DRAW);
-  glUseProgram(terrain_program_.name());
+  glUseProgram(programs().terrain.name());
   glBindVertexArray(patch_layout_.name());
   glPatchParameteri(GL_PATCH_VERTICES, 1);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (std::size_t first = 0, count = 0; first < patches_.size(); first += count) {
-    // The finest level's come first; a call may run on into the others.
-    const int fine_side = patches_[first].z == 0 ? terrain_.settings().fine_patch_samples : 0;
+    // The finest level's come first, stones' before them; a call may run on into the others.
+    int fine_side = patches_[first].z == 0 ? terrain_.settings().fine_patch_samples : 0;
+    if ((patches_[first].w & render::kStonePatch) != 0) fine_side = render::kStonePatchSamples * render::kStoneCuts;
     const int side = std::max(fine_side, render::kCoarsePatchSamples) + 1;
     count = std::min(std::size_t(kDrawVertices / (side * side)), patches_.size() - first);
     glDrawArrays(GL_PATCHES, GLint(first), GLsizei(count));
@@ -231,7 +246,7 @@ void Renderer::composePicture() {
   glBindTextureUnit(render::kColourUnit, colour_.name());
   glBindTextureUnit(render::kDepthUnit, depth_.name());
   craters_.bind();
-  glUseProgram(picture_program_.name());
+  glUseProgram(programs().picture.name());
   glBindVertexArray(no_layout_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,12 +10,12 @@
 #include "client/column_renderer.h"
 #include "client/crater_colours.h"
 #include "client/highlight.h"
+#include "client/material_looks.h"
 #include "client/png_file.h"
 #include "client/terrain_levels.h"
 
 namespace spoor {
 
-enum class Ground { snow, sand, mud, dirt, grass };
 /// columns: every cell round the focus as a vertical bar, coloured by its height, and nothing else of the ground.
 enum class Shade { lit, normals, columns };
 
@@ -29,8 +30,10 @@ struct RenderSettings {
   int blur_passes = -1;      // of the ground's normals, 0 .. 16; -1: as the pack says
   int patches_per_row = -1;  // of the ground's mesh, 0 .. 4096, see finePatchSamples; -1: as the pack says
   double triangle_px = 8.0;  // wanted side of a triangle on the screen
-  double detail = 1.0;       // strength of the grain finer than a cell, 0 .. 1
-  Ground ground = Ground::snow;
+  int tessellation = 0;  // into how many parts each side of a patch is cut, a power of two, as far as its samples go
+                         // [Gilardi et al.'s tessellation factor]; 0: as triangle_px asks for
+  double detail = 1.0;   // strength of the grain finer than a cell, 0 .. 1
+  Ground ground = Ground::scene;
   Shade shade = Shade::lit;
   ColumnSettings columns;
   bool bodies = true;  // whether they are drawn
@@ -43,8 +46,9 @@ struct FrameTimes {
   double draw_ms = 0;     // all the rest
 };
 
-/// Draws a world: ground, bodies, sky. Needs a current GL 4.5 context for its whole life. Throws std::runtime_error
-/// where the driver lacks something or a shader is wrong.
+/// Draws a world: ground, bodies, sky. Dormant ground follows the snow that falls on it a little late (TerrainLevels).
+/// Needs a current GL 4.5 context for its whole life. Throws std::runtime_error where the driver lacks something or a
+/// shader is wrong.
 class Renderer {
  public:
   /// The pack must outlive this.
@@ -84,6 +88,7 @@ class Renderer {
   RenderSettings settings_;
   double cell_m_;
   glm::dvec3 sun_;
+  std::vector<render::MaterialLook> looks_;
   TerrainLevels terrain_;
   BodyRenderer bodies_;
   ColumnRenderer columns_;
@@ -91,10 +96,14 @@ class Renderer {
   Highlight highlight_;
   std::vector<TileCoordinate> changed_;
   std::vector<Patch> patches_;
-  GlBuffer frame_block_, patch_buffer_;
+  GlBuffer frame_block_, looks_block_, patch_buffer_;
   GlVertexArray patch_layout_, no_layout_;
-  GlProgram terrain_program_, picture_program_;
-  GlTexture colour_, depth_;  // multisampled: bodies and the depth of all
+  struct Programs {
+    GlProgram terrain, picture;
+  };
+  const Programs& programs();
+  std::array<Programs, 2> programs_;  // without and with cover maps, made when they are wanted
+  GlTexture colour_, depth_;          // multisampled: bodies and the depth of all
   GlRenderbuffer picture_colour_;
   GlFramebuffer target_, picture_;
 };

@@ -110,11 +110,23 @@ void TerrainLevels::forget() {
 
 void TerrainLevels::updateHeights(const TerrainView& view, glm::ivec2 focus_cell,
                                   std::span<const TileCoordinate> changed) {
+  prepareCover(view);
   for (int level = 0; level < kLevelCount; ++level) moveWindow(level, focus_cell);
   // Changed tiles first: pages that are loaded below hold the newest heights anyway.
   for (const TileCoordinate at : changed) uploadTile(view, at);
   loadPages(view);
   bind();
+}
+
+/// Maps that show nothing are not there: bound are then those of one texel.
+void TerrainLevels::prepareCover(const TerrainView& view) {
+  const bool wanted = settings_.materials || !view.state->snowfalls.empty();
+  if (fine_cover_.name() != 0 && (has_cover_ || !wanted)) return;
+  const auto sideOf = [&](int level) { return wanted ? levels_[std::size_t(level)].page_count * kPageSamples : 1; };
+  fine_cover_ = makeLayers(GL_RG8UI, sideOf(0), 1, GL_NEAREST);
+  coarse_cover_ = makeLayers(GL_RG8UI, sideOf(1), kLevelCount - 1, GL_NEAREST);
+  has_cover_ = wanted;
+  if (wanted) forget();
 }
 
 void TerrainLevels::updateRelief() {
@@ -163,6 +175,7 @@ void TerrainLevels::loadPages(const TerrainView& view) {
   std::vector<LoadJob> jobs = missingPages();
   stats.pages_loaded += std::int64_t(jobs.size());
   addNewCraters(view, jobs);
+  addSnowedPages(view, jobs);
   for (std::size_t done = 0; done < jobs.size(); done += kBatchPages)
     load(view, std::span(jobs).subspan(done, std::min(kBatchPages, jobs.size() - done)));
 }
@@ -181,30 +194,45 @@ std::vector<TerrainLevels::LoadJob> TerrainLevels::missingPages() const {
 
 void TerrainLevels::load(const TerrainView& view, std::span<const LoadJob> jobs) {
   std::vector<std::int32_t> height_q(jobs.size() * kPageCells);
-  const auto heightsOf = [&](std::size_t i) {
+  std::vector<CoverSample> cover(has_cover_ ? height_q.size() : 0);
+  const auto samplesOf = [&](auto& all, std::size_t i) {
     const glm::ivec2 count = jobs[i].box.count;
-    return std::span(height_q).subspan(i * kPageCells, std::size_t(count.x) * std::size_t(count.y));
+    return std::span(all).subspan(i * kPageCells, std::size_t(count.x) * std::size_t(count.y));
   };
-  forEachInParallel(jobs.size(), [&](std::size_t i) { fillSamples(view, jobs[i].level, jobs[i].box, heightsOf(i)); });
+  forEachInParallel(jobs.size(), [&](std::size_t i) {
+    fillSamples(view, jobs[i].level, jobs[i].box, samplesOf(height_q, i));
+    if (has_cover_) fillCover(view, jobs[i].level, jobs[i].box, samplesOf(cover, i));
+  });
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const auto [lowest, highest] = std::ranges::minmax_element(heightsOf(i));
+    const LoadJob& job = jobs[i];
+    const auto [lowest, highest] = std::ranges::minmax_element(samplesOf(height_q, i));
     HeightRange range{*lowest, *highest};
-    if (holds(jobs[i].level, jobs[i].page)) range.include(slot(jobs[i].level, jobs[i].page).range);
-    slot(jobs[i].level, jobs[i].page) = Page{jobs[i].page, true, range};
-    uploadBox(jobs[i].level, jobs[i].box, heightsOf(i).data());
+    const bool whole = job.box.count == glm::ivec2(kPageSamples);
+    const Page* before = holds(job.level, job.page) ? &slot(job.level, job.page) : nullptr;
+    if (before != nullptr) range.include(before->range);
+    const std::int32_t tick = before != nullptr && !whole ? before->tick : view.state->tick;
+    slot(job.level, job.page) = Page{job.page, true, range, tick};
+    uploadBox(job.level, job.box, samplesOf(height_q, i).data());
+    if (has_cover_) uploadCover(job.level, job.box, samplesOf(cover, i).data());
   }
 }
 
 void TerrainLevels::uploadTile(const TerrainView& view, TileCoordinate at) {
   std::array<std::int32_t, kPageCells> height_q;
+  std::array<CoverSample, kPageCells> cover;
   for (int level = 0; strideOf(level) <= kPageSamples; ++level) {
     const int side = kPageSamples / strideOf(level);
     const SampleBox box{glm::ivec2(at.x, at.y) * side, glm::ivec2(side)};
     const glm::ivec2 page(floorDivide(box.first.x, kPageSamples), floorDivide(box.first.y, kPageSamples));
     if (!holds(level, page)) continue;
-    const auto heights = std::span(height_q).first(std::size_t(side) * std::size_t(side));
+    const std::size_t count = std::size_t(side) * std::size_t(side);
+    const auto heights = std::span(height_q).first(count);
     fillSamples(view, level, box, heights);
     uploadBox(level, box, heights.data());
+    if (has_cover_) {
+      fillCover(view, level, box, std::span(cover).first(count));
+      uploadCover(level, box, cover.data());
+    }
     const auto [lowest, highest] = std::ranges::minmax_element(heights);
     slot(level, page).range.include({*lowest, *highest});
     if (level == 0) ++stats.tiles_uploaded;
@@ -226,11 +254,26 @@ void TerrainLevels::uploadBox(int level, const SampleBox& box, const std::int32_
   stats.samples_uploaded += std::int64_t(box.count.x) * box.count.y;
 }
 
+void TerrainLevels::uploadCover(int level, const SampleBox& box, const CoverSample* cover) {
+  const int side = levels_[std::size_t(level)].page_count * kPageSamples;
+  const glm::ivec2 texel(floorModulo(box.first.x, side), floorModulo(box.first.y, side));
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  if (level == 0)
+    glTextureSubImage2D(fine_cover_.name(), 0, texel.x, texel.y, box.count.x, box.count.y, GL_RG_INTEGER,
+                        GL_UNSIGNED_BYTE, cover);
+  else
+    glTextureSubImage3D(coarse_cover_.name(), 0, texel.x, texel.y, level - 1, box.count.x, box.count.y, 1,
+                        GL_RG_INTEGER, GL_UNSIGNED_BYTE, cover);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
 void TerrainLevels::bind() const {
   glBindTextureUnit(kFineHeightUnit, fine_height_.name());
   glBindTextureUnit(kCoarseHeightUnit, coarse_height_.name());
   glBindTextureUnit(kFineReliefUnit, fine_relief_.name());
   glBindTextureUnit(kCoarseReliefUnit, coarse_relief_.name());
+  glBindTextureUnit(kFineCoverUnit, fine_cover_.name());
+  glBindTextureUnit(kCoarseCoverUnit, coarse_cover_.name());
 }
 
 std::array<LevelWindow, kLevelCount> TerrainLevels::windows() const {

@@ -43,25 +43,10 @@ std::vector<MirroredRun> mirroredRuns(int first_cell, int stride, int count, std
 void fillGround(const DormantGround& ground, glm::ivec2 first_cell, int stride, glm::ivec2 count,
                 std::span<std::int32_t> out) {
   const glm::ivec2 size(ground.base->pack().width_cells, ground.base->pack().height_cells);
-  const auto rows = mirroredRuns(first_cell.y, stride, count.y, size.y);
-  const auto columns = mirroredRuns(first_cell.x, stride, count.x, size.x);
-  if (rows.size() == 1 && columns.size() == 1 && !rows[0].backwards && !columns[0].backwards)
-    return ground.fillArea(columns[0].low, rows[0].low, stride, count.x, count.y, out);
-  std::vector<std::int32_t> part;
-  for (const MirroredRun& row : rows) {
-    for (const MirroredRun& column : columns) {
-      part.resize(std::size_t(row.count) * std::size_t(column.count));
-      ground.fillArea(column.low, row.low, stride, column.count, row.count, part);
-      for (int y = 0; y < row.count; ++y) {
-        const auto from = part.begin() + (row.backwards ? row.count - 1 - y : y) * column.count;
-        const auto to = out.begin() + (row.first + y) * count.x + column.first;
-        if (column.backwards)
-          std::reverse_copy(from, from + column.count, to);
-        else
-          std::copy_n(from, column.count, to);
-      }
-    }
-  }
+  fillMirrored(size, first_cell, stride, count, out,
+               [&](glm::ivec2 at, glm::ivec2 part_count, std::span<std::int32_t> part) {
+                 ground.fillArea(at.x, at.y, stride, part_count.x, part_count.y, part);
+               });
 }
 
 /// Mean of what a block of a tile's cells gained over the base; cells outside the world do not count. Nothing where all
@@ -97,7 +82,7 @@ void fillLiveTile(const Tile& tile, const BaseTerrain& base, glm::ivec2 first, i
   const int stride = rules::kTileSize / side;
   std::array<std::int32_t, rules::kTileCells> plain;
   const std::span<std::int32_t> samples = std::span(plain).first(std::size_t(side * side));
-  fillGround({&base, nullptr}, first * stride + stride / 2, stride, glm::ivec2(side), samples);
+  fillGround({&base}, first * stride + stride / 2, stride, glm::ivec2(side), samples);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
       if (const auto gain = meanGain(tile, base.pack(), {x * stride, y * stride}, stride))
@@ -106,28 +91,55 @@ void fillLiveTile(const Tile& tile, const BaseTerrain& base, glm::ivec2 first, i
 
 }  // namespace
 
-void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::span<std::int32_t> height_q) {
-  SPOOR_ASSERT(height_q.size() == std::size_t(box.count.x) * std::size_t(box.count.y));
-  const int shift = level * render::kLevelShift;
-  const int stride = 1 << shift;
-  const int middle = level == 0 ? 0 : stride / 2;
-  fillGround({view.base, &view.state->craters}, box.first * stride + middle, stride, box.count, height_q);
-  if (stride > rules::kTileSize) return;
+void fillMirrored(glm::ivec2 size, glm::ivec2 first_cell, int stride, glm::ivec2 count, std::span<std::int32_t> out,
+                  const std::function<void(glm::ivec2, glm::ivec2, std::span<std::int32_t>)>& fill) {
+  const auto rows = mirroredRuns(first_cell.y, stride, count.y, size.y);
+  const auto columns = mirroredRuns(first_cell.x, stride, count.x, size.x);
+  if (rows.size() == 1 && columns.size() == 1 && !rows[0].backwards && !columns[0].backwards)
+    return fill({columns[0].low, rows[0].low}, count, out);
+  std::vector<std::int32_t> part;
+  for (const MirroredRun& row : rows) {
+    for (const MirroredRun& column : columns) {
+      part.resize(std::size_t(row.count) * std::size_t(column.count));
+      fill({column.low, row.low}, {column.count, row.count}, part);
+      for (int y = 0; y < row.count; ++y) {
+        const auto from = part.begin() + (row.backwards ? row.count - 1 - y : y) * column.count;
+        const auto to = out.begin() + (row.first + y) * count.x + column.first;
+        if (column.backwards)
+          std::reverse_copy(from, from + column.count, to);
+        else
+          std::copy_n(from, column.count, to);
+      }
+    }
+  }
+}
 
+void forEachLiveTile(const TerrainView& view, int level, const SampleBox& box,
+                     const std::function<void(const Tile&, glm::ivec2, int, std::size_t)>& visit) {
+  const int shift = level * render::kLevelShift;
+  if (1 << shift > rules::kTileSize) return;
   const int side = rules::kTileSize >> shift;  // samples along a tile
   for (int y = 0; y < box.count.y; y += side) {
     for (int x = 0; x < box.count.x; x += side) {
       const glm::ivec2 first = box.first + glm::ivec2(x, y);
       if (first.x < 0 || first.y < 0) continue;
       const Tile* tile = view.state->tiles.find({first.x / side, first.y / side});
-      if (tile == nullptr) continue;
-      const auto out = height_q.subspan(std::size_t(y * box.count.x + x));
-      if (level == 0)
-        copyTile(*tile, view.base->pack(), out, box.count.x);
-      else
-        fillLiveTile(*tile, *view.base, first, side, out, box.count.x);
+      if (tile != nullptr) visit(*tile, first, side, std::size_t(y * box.count.x + x));
     }
   }
+}
+
+void fillSamples(const TerrainView& view, int level, const SampleBox& box, std::span<std::int32_t> height_q) {
+  SPOOR_ASSERT(height_q.size() == std::size_t(box.count.x) * std::size_t(box.count.y));
+  const int stride = 1 << (level * render::kLevelShift);
+  const int middle = level == 0 ? 0 : stride / 2;
+  fillGround(dormantGround(*view.state, *view.base), box.first * stride + middle, stride, box.count, height_q);
+  forEachLiveTile(view, level, box, [&](const Tile& tile, glm::ivec2 first, int side, std::size_t at) {
+    if (level == 0)
+      copyTile(tile, view.base->pack(), height_q.subspan(at), box.count.x);
+    else
+      fillLiveTile(tile, *view.base, first, side, height_q.subspan(at), box.count.x);
+  });
 }
 
 }  // namespace spoor

@@ -143,7 +143,7 @@ double groundHeight(const TerrainView& view, const glm::dvec2& place_m) {
   const auto heightOf = [&](double cell_x, double cell_y) {
     const auto x = std::int32_t(std::min(cell_x, size.x - 1.0)), y = std::int32_t(std::min(cell_y, size.y - 1.0));
     const Tile* tile = view.state->tiles.find({x / rules::kTileSize, y / rules::kTileSize});
-    if (tile == nullptr) return double(DormantGround{view.base, &view.state->craters}.height(x, y));
+    if (tile == nullptr) return double(dormantGround(*view.state, *view.base).height(x, y));
     return double(tile->height()[std::size_t(y % rules::kTileSize * rules::kTileSize + x % rules::kTileSize)]);
   };
   const glm::dvec2 part = at - low;

@@ -12,7 +12,7 @@ import tempfile
 
 ROOT = pathlib.Path(sys.argv[1]).resolve()
 STAGES = {".comp": "comp", ".vert": "vert", ".tesc": "tesc", ".tese": "tese", ".frag": "frag"}
-# What the host defines (gl_programs.cpp), in every combination that makes another text.
+# What the host defines (gl_programs.cpp, renderer.cpp), in every combination that makes another text.
 COMPACTS = [f"SPOOR_COMPACTS {compacts}" for compacts in (0, 1)]
 METRICS = [f"SPOOR_METRIC {metric}" for metric in (0, 1, 2)]
 SPREADS = [f"SPOOR_SPREAD {spread}" for spread in (0, 1)]
@@ -27,6 +27,8 @@ DEFINES = {
     "flow_begin.comp": METRICS,
     "displace_request.comp": [f"{spread}|SPOOR_SEARCH 0" for spread in SPREADS] + [f"{spread}|SPOOR_SEARCH 1|{metric}" for spread in SPREADS for metric in METRICS],
     "displace_take.comp": SPREADS,
+    "picture.frag": [f"SPOOR_TEXTURES {textures}|SPOOR_COVER {cover}" for textures in (1, 511) for cover in (0, 1)],
+    "terrain.tese": [f"SPOOR_STONES {stones}|SPOOR_COVER {cover}" for stones in (0, 1) for cover in (0, 1)],
     "slope_amounts.comp": SLOPES,
     "slope_gather.comp": SLOPES,
     "slope_scatter.comp": SLOPES,

@@ -12,14 +12,6 @@ struct CraterLook {
   vec2 slope;   // of what is finer than the heights
 };
 
-/// Soil that lies under the ground's cover.
-vec3 bareSoil() {
-  if (frame.world.z == kGroundSand) return vec3(0.330, 0.215, 0.115);
-  if (frame.world.z == kGroundMud) return vec3(0.185, 0.120, 0.072);
-  if (frame.world.z == kGroundDirt) return vec3(0.170, 0.082, 0.046);
-  return vec3(0.205, 0.132, 0.078);
-}
-
 /// An octave of the radial noise's kind, between its own and the grain: 2^fold times 24 spokes. -1 .. 1.
 float fineOctave(uint seed, int fold, uint turn, float radius) {
   uint around = mulHigh(turn << uint(fold), 24u << kNoiseBits);
@@ -96,7 +88,8 @@ vec3 craterMarks(CraterShape shape, float away, uint turn, vec2 crumbs, float fo
 /// All craters at a place of the map. The newest lies over the one before it; two that show fully are as many as count,
 /// those that only fade in count for as much as they show, so that no border is hard.
 /// @param footprint_m  the pixel's, the shorter and the longer side
-CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
+/// @param bare_soil    what lies under the ground's cover
+CraterLook craterLookAt(ivec2 at, vec2 footprint_m, vec3 bare_soil) {
   CraterLook look = CraterLook(vec3(0.0), 0.0, 0.0, vec2(0.0));
   CraterRange range = cratersAt(at.x, at.y);
   float counted = 0.0;
@@ -125,7 +118,7 @@ CraterLook craterLookAt(ivec2 at, vec2 footprint_m) {
     look.slope += open * fineSlope(shape, vec2(from) / float(kUnitsPerMetre), turn, middle_m);
     if (cover <= 0.0) continue;
     float pale = placeNoise(at, 13, 0x3c6ef372u).x * shownDetail(footprint_m.y, bitsSize(13));
-    vec3 dirt = bareSoil() * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
+    vec3 dirt = bare_soil * max(1.0 + 1.0 * soil.x + 0.25 * pale + 0.30 * crumbs.x, 0.2);
     vec3 char_black = vec3(0.036, 0.031, 0.028) * (1.0 + 1.2 * soil.x);
     float black = 1.0 - (1.0 - marks.y) * (1.0 - marks.z);
     look.albedo += open * (black * char_black + (1.0 - black) * marks.x * dirt);

@@ -28,24 +28,36 @@ RENDER_CONST kOcclusionReach = 6;    // samples looked at around a sample for th
 RENDER_CONST kBlurPassesLimit = 16;  // of the Gaussian over slopes; each reaches one sample further
 
 // Patch flags, one bit an edge in the order west, south, east, north.
-RENDER_CONST kRimEdges = 1;    // << edge: the edge lies on the window's border
-RENDER_CONST kHoleEdges = 16;  // << edge: the edge borders on the next finer window
+RENDER_CONST kRimEdges = 1;      // << edge: the edge lies on the window's border
+RENDER_CONST kHoleEdges = 16;    // << edge: the edge borders on the next finer window, or on finer patches
+RENDER_CONST kStonePatch = 256;  // the patch has kStonePatchSamples a side and is cut finer than its cells
+RENDER_CONST kCellEdges = 512;   // << edge: an edge of such a patch that borders on others: a vertex a cell
 
 RENDER_CONST kHighlightTiles = 256;  // side of the mask of marked tiles, a power of two
 
 RENDER_CONST kShadeLit = 0;
 RENDER_CONST kShadeNormals = 1;
 RENDER_CONST kShadeColumns = 2;
-RENDER_CONST kGroundSnow = 0;
-RENDER_CONST kGroundSand = 1;
-RENDER_CONST kGroundMud = 2;
-RENDER_CONST kGroundDirt = 3;
-RENDER_CONST kGroundGrass = 4;
+
+// Textures of materials, in the order of MaterialTexture (shared/world/material.h).
+RENDER_CONST kTexturePlain = 0;
+RENDER_CONST kTextureSnow = 1;
+RENDER_CONST kTextureSand = 2;
+RENDER_CONST kTextureMud = 3;
+RENDER_CONST kTexturePebbles = 4;
+RENDER_CONST kTextureGravel = 5;
+RENDER_CONST kTextureDust = 6;
+RENDER_CONST kTextureDirt = 7;
+RENDER_CONST kTextureGrass = 8;
+RENDER_CONST kLooksLimit = 16;         // materials of a pack
+RENDER_CONST kStonePatchSamples = 16;  // side of a patch of level 0 that is cut finer than its cells, to show stones
+RENDER_CONST kStoneCuts = 4;           // of a cell's side there, at most
 
 // Binding points.
 RENDER_CONST kFrameBinding = 0;       // uniform block
 RENDER_CONST kReliefJobBinding = 1;   // uniform block
 RENDER_CONST kColumnAreaBinding = 2;  // uniform block
+RENDER_CONST kLooksBinding = 3;       // uniform block
 RENDER_CONST kFineHeightUnit = 0;     // texture units
 RENDER_CONST kCoarseHeightUnit = 1;
 RENDER_CONST kFineReliefUnit = 2;
@@ -54,6 +66,8 @@ RENDER_CONST kBodyShadowUnit = 4;
 RENDER_CONST kColourUnit = 5;
 RENDER_CONST kDepthUnit = 6;
 RENDER_CONST kHighlightUnit = 7;
+RENDER_CONST kFineCoverUnit = 8;
+RENDER_CONST kCoarseCoverUnit = 9;
 RENDER_CONST kCraterBinding = 0;  // storage blocks: the first of
 RENDER_CONST kCraterBlocks = 5;
 RENDER_CONST kReliefImage = 0;  // image units
@@ -78,9 +92,19 @@ struct Frame {
   vec4 scale;            // cell [m]; pixels per radian (orthographic: per metre); pixels per triangle; fog [1/m]
   vec4 look;     // strength of the fine detail, 0 .. 1; the shadow map's texel [m]; samples a pixel; strength of marks
   ivec4 origin;  // cell x, y; height, 0.1 mm; samples along a patch of level 0
-  ivec4 world;   // cells x, y; kGround*; kShade*
+  ivec4 world;   // cells x, y; materials, 0: looks[0] everywhere; kShade*
   ivec4 place;   // side of a cell, 0.1 mm
+  vec4 stones;   // how far from the eye they are cut out [m], 0: nowhere; pixels per triangle there; parts into which
+                 // each edge of a patch is cut, 0: as its length asks for
   LevelWindow levels[kLevelCount];
+};
+
+/// How the ground of a material looks.
+struct MaterialLook {
+  vec4 albedo;         // linear; w: how wet it is, 0 .. 1
+  vec4 soil;           // under its surface, linear
+  vec4 tint;           // of what its texture is drawn in; w: height of its grains [m]
+  ivec4 texture_kind;  // kTexture*; side of its grains, 0.1 mm, 0: none
 };
 
 /// One dispatch of relief.comp or blur_slopes.comp: a box of texels of one level.
@@ -100,7 +124,8 @@ struct ColumnArea {
 #ifdef __cplusplus
 static_assert(sizeof(ColumnArea) == 32);
 static_assert(sizeof(LevelWindow) == 32);
-static_assert(sizeof(Frame) == 2 * 64 + 10 * 16 + kLevelCount * 32);
+static_assert(sizeof(MaterialLook) == 64);
+static_assert(sizeof(Frame) == 2 * 64 + 11 * 16 + kLevelCount * 32);
 static_assert(sizeof(ReliefJob) == 64);
 // A slope looks one sample beyond its own, each pass one more, and so does the filter that reads the map.
 static_assert(kMorphRimSamples > kShadowSteps && kMorphRimSamples > kBlurPassesLimit + 2);

@@ -1,11 +1,19 @@
-// What dirt and grass look like close by. Snow, sand and mud are plain: their grain is in detail.glsl.
+// What materials look like close by, by their textures. What is plain, or snow, has but the grain of detail.glsl.
+// All of it fades to the material's colour before it gets finer than a pixel.
 
 struct GroundCover {
   vec3 albedo;
   vec2 slope;
+  float wet;  // 0 .. 1: how much it mirrors
+  float sky;  // shares of the sky and the sun that its own grains let through
+  float sun;
+  float lift;  // how high a place lies among them, 0 .. 1
 };
 
-/// Soil in grains and small clods: brightness about 0, and slope. All of it fades out before it gets finer than a pixel.
+GroundCover coverOf(vec3 albedo, vec2 slope) { return GroundCover(albedo, slope, 0.0, 1.0, 1.0, 0.0); }
+
+/// Soil in grains and small clods: brightness about 0, and slope. All of it fades out before it gets finer than a
+/// pixel.
 vec3 clodsAt(ivec2 at, float footprint_m, uint seed) {
   vec3 sum = vec3(0.0);
   const int bits[5] = int[5](13, 12, 11, 10, 8);
@@ -42,7 +50,7 @@ GroundCover grassAt(ivec2 at, float footprint_m) {
   float dry = clamp(0.34 + 0.45 * meadow + 0.40 * patches + 0.20 * tufts.x, 0.0, 1.0);
   vec3 albedo = mix(vec3(0.085, 0.135, 0.034), vec3(0.215, 0.210, 0.085), dry);
   albedo *= 1.0 + 0.22 * clumps + 0.20 * tufts.x + 0.30 * leaves.x + 0.90 * blades;
-  return GroundCover(max(albedo, vec3(0.01)), 0.026 * tufts.yz + 0.012 * leaves.yz);
+  return coverOf(max(albedo, vec3(0.01)), 0.026 * tufts.yz + 0.012 * leaves.yz);
 }
 
 GroundCover dirtAt(ivec2 at, float footprint_m) {
@@ -51,5 +59,108 @@ GroundCover dirtAt(ivec2 at, float footprint_m) {
   vec3 clods = clodsAt(at, footprint_m, 33u);
   vec3 albedo =
       mix(vec3(0.30, 0.135, 0.070), vec3(0.40, 0.215, 0.125), clamp(0.5 + 0.5 * wide + 0.45 * patches, 0.0, 1.0));
-  return GroundCover(albedo * (1.0 + 0.7 * clods.x), 0.45 * clods.yz);
+  return coverOf(albedo * (1.0 + 0.7 * clods.x), 0.45 * clods.yz);
+}
+
+/// Ripples of the wind and single grains.
+GroundCover sandAt(vec3 colour, ivec2 at, float footprint_m) {
+  float wide = placeNoise(at, 16, 41u).x * shownDetail(footprint_m, bitsSize(16));
+  vec3 ripples = turnedNoise(at, ivec2(1, 3), ivec2(14, 11), 42u) * shownDetail(footprint_m, 0.06);
+  vec3 dents = placeNoise(at, 9, 43u) * shownDetail(footprint_m, bitsSize(9));
+  float grains = detailValue(at >> 4, 44u) * shownDetail(footprint_m, 0.004) +
+                 placeNoise(at, 7, 45u).x * shownDetail(footprint_m, bitsSize(7));
+  vec3 albedo = colour * (1.0 + 0.10 * wide + 0.04 * ripples.x + 0.05 * dents.x + 0.16 * grains);
+  return coverOf(albedo, 0.0030 * ripples.yz + 0.0016 * dents.yz);
+}
+
+/// Smooth lumps, wet in patches.
+GroundCover mudAt(vec3 colour, float wet, ivec2 at, float footprint_m) {
+  float wide = placeNoise(at, 15, 51u).x * shownDetail(footprint_m, bitsSize(15));
+  float patches = placeNoise(at, 13, 52u).x * shownDetail(footprint_m, bitsSize(13));
+  vec3 clods = clodsAt(at, footprint_m, 53u);
+  vec3 lumps = placeNoise(at, 10, 54u) * shownDetail(footprint_m, bitsSize(10));
+  float damp = clamp(0.5 + 0.8 * wide + 0.6 * patches, 0.0, 1.0);
+  GroundCover cover = coverOf(colour * (1.12 - 0.24 * damp) * (1.0 + 0.5 * clods.x + 0.08 * lumps.x),
+                              (0.50 - 0.25 * damp) * clods.yz + 0.004 * lumps.yz);
+  cover.wet = wet * (0.25 + 0.75 * damp);
+  return cover;
+}
+
+/// Fine powder: even, with faint drifts.
+GroundCover dustAt(vec3 colour, ivec2 at, float footprint_m) {
+  float wide = placeNoise(at, 16, 61u).x * shownDetail(footprint_m, bitsSize(16));
+  vec3 drifts = placeNoise(at, 13, 62u) * shownDetail(footprint_m, bitsSize(13));
+  float puffs = placeNoise(at, 10, 63u).x * shownDetail(footprint_m, bitsSize(10));
+  return coverOf(colour * (1.0 + 0.08 * wide + 0.05 * drifts.x + 0.03 * puffs), 0.006 * drifts.yz);
+}
+
+/// How much a stone catches the sun that lies that way: shadows of stones on stones.
+float stonesSun(ivec2 at, int side, bool broken, float height, float high_m) {
+  float away_m = 0.42 * float(side) / float(kUnitsPerMetre);
+  vec2 ahead = normalize(frame.sun.xy) * 0.42 * float(side);
+  float over = stonesAt(at + ivec2(ahead), side, broken).height - height - away_m * frame.sun.w / max(high_m, 1.0e-4);
+  return 1.0 - 0.8 * smoothstep(-0.05, 0.25, over);
+}
+
+/// Stones of the material's colour, each a little another, with its soil between them.
+GroundCover stonesLook(MaterialLook look, MapPlace place, vec2 footprint_m) {
+  ivec2 at = place.at;
+  int side = look.texture_kind.y;
+  float side_m = float(side) / float(kUnitsPerMetre);
+  bool broken = look.texture_kind.x == kTextureGravel;
+  // Each is round: blurring by the longer side of the footprint would hide them too near.
+  float middle_m = sqrt(footprint_m.x * footprint_m.y);
+  float patches = 0.0;
+  for (int bits = 11; bits <= 15; ++bits)
+    patches +=
+        (bits == 11 ? 0.22 : 0.10) * placeNoise(at, bits, 60u + uint(bits)).x * shownDetail(middle_m, bitsSize(bits));
+  GroundCover cover = coverOf(look.albedo.rgb * (1.0 + patches), vec2(0.0));
+  float shown = side == 0 ? 0.0 : shownDetail(middle_m, 0.6 * side_m);
+  // From afar the shadows between them darken what is seen.
+  const float kSeenFromAfar = 0.80;
+  cover.sun = side == 0 ? 1.0 : kSeenFromAfar;
+  cover.sky = cover.sun;
+  if (shown <= 0.0) return cover;
+  Stones stones = stonesAt(at, side, broken);
+  uint hash = stones.stone * 0x9e3779b1u;
+  float bright = float((hash >> 24) & 255u) / 255.0, warm = float((hash >> 16) & 255u) / 127.5 - 1.0;
+  bright = broken ? mix(0.70, 1.35, bright) : mix(0.60, 1.50, bright * bright * 0.6 + 0.4 * bright);
+  float veins = placeNoise(at + ivec2(int(hash & 4095u)), 7, 72u).x * shownDetail(footprint_m.y, bitsSize(7));
+  vec3 stone = cover.albedo * bright * (1.0 + 0.08 * warm * vec3(1.0, 0.1, -1.1)) * (1.0 + 0.14 * veins);
+  vec3 between = mix(look.soil.rgb, look.albedo.rgb, 0.2) * 0.7;
+  vec3 albedo = stones.stone == 0u ? between : stone;
+  cover.albedo = mix(cover.albedo, albedo, shown);
+  cover.slope = stones.slope * (look.tint.w / side_m) * shown;
+  cover.lift = stones.height * shown;
+  cover.sky = mix(cover.sky, 1.0 - 0.65 * (1.0 - smoothstep(0.0, 0.75, stones.height)), shown);
+  vec2 mirrored = place.facing;  // the sun does not turn with the ground beyond the border: no shadows there
+  if (look.tint.w > 0.0 && all(greaterThan(mirrored, vec2(0.0))))
+    cover.sun = mix(cover.sun, stonesSun(at, side, broken, stones.height, look.tint.w), shown);
+  return cover;
+}
+
+/// Is a texture among those of the looks? Known when the shader is compiled: some drivers compute all branches.
+#define HAS_TEXTURE(kind) ((SPOOR_TEXTURES & (1 << (kind))) != 0)
+
+/// One material's look at a place.
+/// @param plain  what it is without its texture: its colour and grain
+GroundCover materialAt(MaterialLook look, vec3 plain, MapPlace place, vec2 footprint_m) {
+  int kind = look.texture_kind.x;
+  GroundCover cover = coverOf(plain, vec2(0.0));
+  if (HAS_TEXTURE(kTextureSand) && kind == kTextureSand) cover = sandAt(look.albedo.rgb, place.at, footprint_m.y);
+  if (HAS_TEXTURE(kTextureMud) && kind == kTextureMud)
+    cover = mudAt(look.albedo.rgb, look.albedo.w, place.at, footprint_m.y);
+  if ((HAS_TEXTURE(kTexturePebbles) && kind == kTexturePebbles) ||
+      (HAS_TEXTURE(kTextureGravel) && kind == kTextureGravel))
+    cover = stonesLook(look, place, footprint_m);
+  if (HAS_TEXTURE(kTextureDust) && kind == kTextureDust) cover = dustAt(look.albedo.rgb, place.at, footprint_m.y);
+  if (HAS_TEXTURE(kTextureDirt) && kind == kTextureDirt) {
+    cover = dirtAt(place.at, footprint_m.y);
+    cover.albedo *= look.tint.rgb;
+  }
+  if (HAS_TEXTURE(kTextureGrass) && kind == kTextureGrass) {
+    cover = grassAt(place.at, footprint_m.y);
+    cover.albedo *= look.tint.rgb;
+  }
+  return cover;
 }

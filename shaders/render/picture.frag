@@ -37,6 +37,9 @@ void main() {
     nearest = max(nearest, depth);
     furthest = min(furthest, depth);
   }
+  // Shaded once where samples lie close together.
+  vec2 places[kSampleLimit];  // depth, how many samples it stands for
+  int place_count = 0;
   if (ground_count > 0.0 && crater_head.mask >= 0 && nearest > 1.01 * furthest && nearest < 1.15 * furthest) {
     // Between a rim and what lies behind it there is nothing to be shaded: both, by how many samples show them.
     float middle = 0.5 * (nearest + furthest);
@@ -45,14 +48,18 @@ void main() {
       if (depths[i] > middle) near += vec2(depths[i], 1.0);
       if (depths[i] > 0.0 && depths[i] <= middle) far += vec2(depths[i], 1.0);
     }
-    sum += vec4(groundColour(placeAt(screen, near.x / near.y)), 1.0) * near.y;
-    sum += vec4(groundColour(placeAt(screen, far.x / far.y)), 1.0) * far.y;
+    places[0] = vec2(near.x / near.y, near.y);
+    places[1] = vec2(far.x / far.y, far.y);
+    place_count = 2;
   } else if (ground_count > 0.0 && (frame.eye.w > 0.0 || nearest < 1.15 * furthest)) {
-    sum += vec4(groundColour(placeAt(screen, depth_sum / ground_count)), 1.0) * ground_count;
+    places[0] = vec2(depth_sum / ground_count, ground_count);
+    place_count = 1;
   } else if (ground_count > 0.0) {
     for (int i = 0; i < sample_count; ++i)
-      if (depths[i] > 0.0) sum += vec4(groundColour(placeAt(screen, depths[i])), 1.0);
+      if (depths[i] > 0.0) places[place_count++] = vec2(depths[i], 1.0);
   }
+  // In one place: what it calls is long, and drivers put it wherever it is called.
+  for (int i = 0; i < place_count; ++i) sum += vec4(groundColour(placeAt(screen, places[i].x)), 1.0) * places[i].y;
   float covered = sum.a / float(sample_count);
   vec3 direction = normalize(frame.ray_forward.xyz + screen.x * frame.ray_right.xyz + screen.y * frame.ray_up.xyz);
   vec3 behind = covered < 1.0 ? toScreen(skyWithSun(direction)) : vec3(0.0);

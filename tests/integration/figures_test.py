@@ -80,8 +80,8 @@ def a_crater_of_each_kind_is_drawn(folder):
 
 def what_cannot_be_drawn_is_said_in_one_line(folder):
     for options, code, text in (
-        (["--only=5.4"], 2, "5.1, 5.2 or 5.3, or craters"),
-        (["--measure=tiles"], 2, "want craters"),
+        (["--only=5.4"], 2, "5.1, 5.2 or 5.3, or craters or drift"),
+        (["--measure=tiles"], 2, "want craters or drift"),
         (["--json=numbers.json"], 2, "--measure"),
         ([f"--pack={SOURCE / 'tests/golden/box.pack'}", "--ticks=0", "--look=crater"], 1, "crater 0 is asked for, there are 0 at tick 0"),
         (["--look=inside"], 2, "--look"),
