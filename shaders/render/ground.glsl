@@ -8,6 +8,7 @@
 #include "cover_map.glsl"
 #include "stones.glsl"
 #include "ground_cover.glsl"
+#include "material_look.glsl"
 #include "crater_look.glsl"
 #include "highlight.glsl"
 
