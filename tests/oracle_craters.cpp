@@ -42,11 +42,8 @@ void Oracle::setDormantHeights() {
     for (int x = 0; x < world_.inside_columns; ++x) {
       if (isLive({x / rules::kTileSize, y / rules::kTileSize})) continue;
       const std::size_t i = world_.at(x, y);
-      // Holes are filled and rims buried by as much as fell, until they are level with the rest.
-      const std::int64_t off_level = std::int64_t(crateredBase(i)) - base_height_[i];
-      const std::int64_t left = off_level > 0 ? std::max<std::int64_t>(off_level - snow_[i], 0)
-                                              : std::min<std::int64_t>(off_level + snow_[i], 0);
-      world_.height[i] = std::int32_t(std::min<std::int64_t>(base_height_[i] + left + snow_[i], rules::kHeightLimit));
+      world_.height[i] =
+          std::int32_t(std::min<std::int64_t>(std::int64_t(crateredBase(i)) + snow_[i], rules::kHeightLimit));
     }
 }
 

@@ -138,6 +138,7 @@ void TilePool::evict(int count, std::int32_t tick) {
 }
 
 void TilePool::drop(std::span<Tile* const> tiles) {
+  if (tiles.empty()) return;
   for (const Tile* tile : tiles)
     if (const auto found = slot_of_.find(tile); found != slot_of_.end()) release(found->second);
   std::ranges::sort(free_, std::greater<>());

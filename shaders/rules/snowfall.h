@@ -1,7 +1,7 @@
 // Snowfall: what has fallen on a cell by a tick, without the ticks between.
 //
 // Layer after layer of one unit falls; of the layer that is falling a cell has its unit already or not yet, each layer
-// in another random order. So the sum over cells grows evenly and every cell lies within a unit of the mean.
+// in another random order. So the sum over cells grows evenly, and what fell on a cell is within a unit of the mean.
 // Source: the seed post's "step of accumulation that randomly add some snow across the texture", in closed form.
 #ifndef SPOOR_RULES_SNOWFALL_H
 #define SPOOR_RULES_SNOWFALL_H

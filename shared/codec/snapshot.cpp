@@ -83,7 +83,7 @@ Result<WorldState> decodeSnapshot(std::span<const std::uint8_t> bytes, const Pac
   if (Status status = readCraters(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   if (Status status = readSnowfalls(reader, base.pack(), state); !status) return Error{"snapshot: " + status.error()};
   const std::size_t count = reader.get<std::uint32_t>();
-  if (reader.failed() || state.tick < 0) return Error{"snapshot: no tick"};
+  if (reader.failed() || state.tick < 0 || state.tick > 1 << 30) return Error{"snapshot: no tick"};
   if (count != base.pack().bodies.size() || count * 2 * kPoseBytes > reader.left())
     return Error{"snapshot: " + std::to_string(count) + " poses for " + std::to_string(base.pack().bodies.size()) +
                  " bodies"};

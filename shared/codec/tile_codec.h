@@ -16,7 +16,7 @@ namespace spoor {
 inline constexpr std::size_t kTickTilesLimit = 1 << 13;
 inline constexpr std::size_t kSnapshotTilesLimit = 1 << 17;
 
-/// Version of a tile that was dormant: base and craters.
+/// Version of a tile that was dormant: base, craters and snow.
 inline constexpr std::int32_t kDormantVersion = -1;
 
 /// What one tick (or the whole time since the base, in a snapshot) did to one tile.

@@ -65,7 +65,9 @@ std::int32_t materialByRules(const BaseTerrain& base, const std::vector<Material
     // Twice the difference from one cell to the next.
     return cells == 0 ? 0 : (std::int64_t(base.height(x1, y1)) - base.height(x0, y0)) * 2 / cells;
   };
-  const std::int64_t along_x = difference(1, 0), along_y = difference(0, 1);
+  // Beyond what a rule can name, so that squares fit.
+  const auto bounded = [](std::int64_t value) { return std::clamp<std::int64_t>(value, -INT32_MAX, INT32_MAX); };
+  const std::int64_t along_x = bounded(difference(1, 0)), along_y = bounded(difference(0, 1));
   const auto square = std::uint64_t(along_x * along_x) + std::uint64_t(along_y * along_y);
   const std::int64_t height = base.height(x, y);
   for (const MaterialRule& rule : rules) {

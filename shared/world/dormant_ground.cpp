@@ -7,8 +7,7 @@ namespace spoor {
 void DormantGround::fillArea(std::int32_t x, std::int32_t y, std::int32_t stride, std::int32_t columns,
                              std::int32_t rows, std::span<std::int32_t> height) const {
   base->fillArea(x, y, stride, columns, rows, height);
-  std::vector<std::int32_t> displacement, level;
-  if (!snowfalls.empty()) level.assign(height.begin(), height.end());
+  std::vector<std::int32_t> displacement;
   if (craters != nullptr && craters->size() > 0) {
     displacement.resize(height.size());
     craters->fill(x, y, stride, columns, rows, displacement);
@@ -19,7 +18,7 @@ void DormantGround::fillArea(std::int32_t x, std::int32_t y, std::int32_t stride
   if (snowfalls.empty()) return;
   displacement.resize(height.size());
   fillSnow(base->pack(), snowfalls, tick, x, y, stride, columns, rows, displacement);
-  for (std::size_t i = 0; i < height.size(); ++i) height[i] = rules::snowGround(height[i], level[i], displacement[i]);
+  for (std::size_t i = 0; i < height.size(); ++i) height[i] = rules::snowGround(height[i], height[i], displacement[i]);
 }
 
 void DormantGround::fillHeights(TileCoordinate tile, std::span<std::int32_t, rules::kTileCells> height) const {

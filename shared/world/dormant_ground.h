@@ -7,7 +7,7 @@
 namespace spoor {
 
 /// Ground that nobody reached yet: the base with the craters of a set in it, never below bedrock, and on it what fell
-/// by a tick, as if all craters had been there before (rules/snowfall.h, snowGround). Computed on demand; whoever looks
+/// by a tick, evenly: only live tiles' hollows are filled. Computed on demand; whoever looks
 /// changes nothing. Borrows all. Thread-safe while the set does not change.
 struct DormantGround {
   const BaseTerrain* base = nullptr;

@@ -12,7 +12,8 @@ constexpr std::int64_t kTurnBlend_q = 5000;  // a corner is turned over half a m
 std::int32_t scaleOf(const Body& body, std::int32_t tick) {
   const std::int64_t ticks = std::int64_t(body.last_scale_tick) - body.first_scale_tick;
   const std::int64_t passed = std::clamp<std::int64_t>(std::int64_t(tick) - body.first_scale_tick, 0, ticks);
-  if (passed == ticks) return body.last_scale_q16;
+  if (tick >= body.last_scale_tick) return body.last_scale_q16;
+  if (passed == 0) return body.first_scale_q16;
   return std::int32_t(body.first_scale_q16 +
                       floorDiv((std::int64_t(body.last_scale_q16) - body.first_scale_q16) * passed, ticks));
 }

@@ -26,14 +26,14 @@ void fillBedrock(const ScenePack& pack, TileCoordinate at, const PlaneCells& hei
 
 /// All that fell on a tile up to now.
 std::int64_t takeSnow(const ScenePack& pack, TileCoordinate at, std::span<const Snowfall> snowfalls, std::int32_t tick,
-                      const PlaneCells& bedrock, PlaneCells& height) {
+                      PlaneCells& height) {
   if (snowfalls.empty()) return 0;
   PlaneCells depth;
   fillSnow(pack, snowfalls, tick, at.x * rules::kTileSize, at.y * rules::kTileSize, 1, rules::kTileSize,
            rules::kTileSize, depth);
   std::int64_t gained = 0;
   for (std::size_t i = 0; i < height.size(); ++i) {
-    const std::int32_t ground = rules::snowGround(height[i], bedrock[i] + pack.soil_depth_q, depth[i]);
+    const std::int32_t ground = rules::snowGround(height[i], height[i], depth[i]);
     gained += ground - height[i];
     height[i] = ground;
   }
@@ -66,7 +66,7 @@ std::unique_ptr<Tile> makeTile(TileCoordinate at, const DormantGround& dormant, 
   std::unique_ptr<TileCraters> known;
   if (dormant.craters != nullptr)
     tile->first_craters = addCraters(at, tile->height(), *tile->bedrock, *dormant.craters, 0, known);
-  tile->first_snow = takeSnow(base.pack(), at, dormant.snowfalls, dormant.tick, *tile->bedrock, tile->height());
+  tile->first_snow = takeSnow(base.pack(), at, dormant.snowfalls, dormant.tick, tile->height());
   tile->ground += tile->first_craters + tile->first_snow;
   tile->planes[int(Plane::material)] = materialsOf(base, at);
   tile->hash = tileHash(*tile);
